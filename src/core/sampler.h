@@ -1,0 +1,117 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 1: sample points as a pure function of (seed, pixel, sample index, set, dimension); no
+ * state.
+ *
+ * `sobol`: Owen-scrambled Sobol points in padded sets of up to four dimensions. The order of the
+ * points inside a set is shuffled by the seed and the set alone, so all pixels of a pass share the
+ * raw points; each pixel scrambles them with a seed of its own. Dimensions 0 and 1 form a
+ * (0,2)-sequence and are the best pair: hand out dimensions only to features in use.
+ * `random`: an independent hash for every number; the slow baseline to compare with.
+ *
+ *     pixel   y << 16 | x, absolute in the whole picture also when only a crop is rendered
+ *     set     FL_SET_CAMERA: pixel filter and lens, up to four dimensions, index i (sample number);
+ *             fl_set_light(seed, path, light): two dimensions, index i * m + j for light sample j
+ * of m path    FL_PATH_CAMERA for camera rays, fl_path_child for the rays they spawn
+ *
+ * This file is the definition; wide_sampler.h gives the same bits for FL_W pixels.
+ * Hash-based Owen scrambling: Laine and Karras 2011, Burley 2020, constants of Vegdahl 2021;
+ * direction numbers: Joe and Kuo 2008.
+ */
+#ifndef FL_SAMPLER_H
+#define FL_SAMPLER_H
+
+#include "core/base.h"
+
+typedef enum fl_sampler { FL_SAMPLER_SOBOL, FL_SAMPLER_RANDOM } fl_sampler;
+
+#define FL_SET_CAMERA  0u /* the set of the pixel filter and the lens */
+#define FL_PATH_CAMERA 1u /* path number of a camera ray */
+
+/** The most dimensions one set has. */
+#define FL_SAMPLE_DIMENSIONS 4
+
+/** Set of the points on light number `light` (scene order) as seen from the hit of ray `path`. */
+static inline uint32_t fl_set_light(uint32_t seed, uint32_t path, uint32_t light)
+{
+    return fl_hash_step(fl_hash_step(fl_hash_step(seed, 1), path), light);
+}
+
+/** Path number of the ray that `path` spawns: branch 0 reflected, 1 refracted. */
+static inline uint32_t fl_path_child(uint32_t seed, uint32_t path, uint32_t branch)
+{
+    return fl_hash_step(fl_hash_step(fl_hash_step(seed, 2), path), branch);
+}
+
+static inline uint32_t fl_pixel_id(uint32_t x, uint32_t y)
+{
+    return y << 16 | x;
+}
+
+static inline uint32_t fl_reverse_bits(uint32_t x)
+{
+    x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    x = (x & 0x0F0F0F0Fu) << 4 | (x >> 4 & 0x0F0F0F0Fu);
+    return __builtin_bswap32(x);
+}
+
+/** Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it. */
+static inline uint32_t fl_owen_reversed(uint32_t n, uint32_t seed)
+{
+    n ^= n * 0x3d20adeau;
+    n += seed;
+    n *= seed >> 16 | 1u;
+    n ^= n * 0x05526c56u;
+    n ^= n * 0x53a22864u;
+    return n;
+}
+
+static inline uint32_t fl_owen(uint32_t x, uint32_t seed)
+{
+    return fl_reverse_bits(fl_owen_reversed(fl_reverse_bits(x), seed));
+}
+
+/** Pascal's matrix modulo 2 in closed form: with k bit-reversed, Sobol dimension 1 of point k. */
+static inline uint32_t fl_sobol_pascal(uint32_t v)
+{
+    v ^= v << 16;
+    v ^= (v & 0x00FF00FFu) << 8;
+    v ^= (v & 0x0F0F0F0Fu) << 4;
+    v ^= (v & 0x33333333u) << 2;
+    v ^= (v & 0x55555555u) << 1;
+    return v;
+}
+
+/** Coordinate `dimension` (0 to 3) of Sobol point `k`, as a binary fraction of 32 bits. */
+uint32_t fl_sobol_raw(uint32_t k, uint32_t dimension);
+
+/** 24 bits as a float in [0, 1): the low 8 would round some numbers up to 1. */
+static inline float fl_unit_float(uint32_t bits)
+{
+    return (float)(bits >> 8) * 0x1p-24f;
+}
+
+/** The definition: number `dimension` of point `index` of `set` at `pixel`, in [0, 1). */
+static inline float fl_sample_scalar(fl_sampler kind, uint32_t seed, uint32_t pixel, uint32_t index,
+                                     uint32_t set, uint32_t dimension)
+{
+    if (kind == FL_SAMPLER_RANDOM) {
+        uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, 3), pixel), index);
+        return fl_unit_float(fl_hash_step(fl_hash_step(h, set), dimension));
+    }
+    uint32_t k = fl_owen(index, fl_hash_step(seed, set));
+    uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, pixel), set), dimension);
+    return fl_unit_float(fl_owen(fl_sobol_raw(k, dimension), h));
+}
+
+/** What all pixels share for one (set, index): made once a pass, read by wide_sampler.h. */
+typedef struct fl_sample_pass {
+    fl_sampler kind;
+    uint32_t seed, set, index;
+    uint32_t raw_reversed[FL_SAMPLE_DIMENSIONS]; /* bit-reversed raw points, as scrambling wants */
+} fl_sample_pass;
+
+fl_sample_pass fl_sample_pass_begin(fl_sampler kind, uint32_t seed, uint32_t set, uint32_t index);
+
+#endif
