@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 3: bounding volume hierarchy with eight children a node, over any boxes. Built by the
+ * surface area heuristic with 16 bins [Wald 2007], straight to eight children: the child with the
+ * largest area is split until there are eight. The tree depends on the boxes alone, never on the
+ * thread count.
+ */
+#ifndef FL_BVH_H
+#define FL_BVH_H
+
+#include "core/arena.h"
+#include "core/pool.h"
+
+enum {
+    FL_BVH_WIDTH = 8, /**< Children a node, and items a leaf at most. */
+    FL_BVH_STACK_MAX =
+        320 /**< Entries that a depth-first walk can need: (width - 1) * depth + 1. */
+};
+
+/* A child is FL_NONE (absent), an inner node's index, or a leaf: flag, items - 1, leaf index. */
+#define FL_BVH_LEAF          0x80000000u
+#define FL_BVH_LEAF_INDEX(c) ((c)&0x0fffffffu)
+#define FL_BVH_LEAF_COUNT(c) ((((c) >> 28) & 7u) + 1u)
+
+/** Boxes of the children as planes: lo x, hi x, lo y, hi y, lo z, hi z. An absent child's box is
+ *  inside out (+inf, -inf), so that no ray enters it. */
+typedef struct fl_bvh_node {
+    float plane[6][FL_BVH_WIDTH];
+    uint32_t child[FL_BVH_WIDTH];
+    uint32_t has_leaf;                 /**< 1 if any child is a leaf. */
+    uint32_t unused[FL_BVH_WIDTH - 1]; /**< To four cache lines. */
+} fl_bvh_node;
+
+/** Node 0 is the root. Leaf k holds items[8 k] and on, in ascending order; unused places are
+ * FL_NONE. */
+typedef struct fl_bvh {
+    fl_bvh_node *nodes;
+    uint32_t *items;
+    uint32_t node_count, leaf_count;
+    float origin_pad; /**< A walk widens all boxes by this times the largest coordinate of the
+                         origin. */
+} fl_bvh;
+
+/** lo <= hi, finite. */
+typedef struct fl_bvh_box {
+    float lo[3], hi[3];
+} fl_bvh_box;
+
+/** Build over boxes[0 .. count), count >= 1. Every box is widened by `pad` on all sides as it is
+ * stored, `origin_pad` is passed on. Memory comes from `arena`. False: out of memory, or more than
+ * 2^28 boxes. O(n log n). */
+bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uint32_t count,
+                  float pad, float origin_pad, fl_pool *pool);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Acceleration structures over the faces of a mesh and over the objects of a scene.
+ */
+#include <string.h>
+
+#include "core/compile_build.h"
+
+/* --- Meshes ---------------------------------------------------------------------------------- */
+
+static void clear_pack(fl_tri_pack *pack)
+{
+    for (int corner = 0; corner < 3; corner++)
+        for (int axis = 0; axis < 3; axis++)
+            for (int k = 0; k < 8; k++)
+                pack->corner[corner][axis][k] = NAN;
+    memset(pack->face, 0xff, sizeof pack->face);
+}
+
+/* Lay `count` faces into packs from `at` on; NULL names the faces first, first + 1, ... */
+static void fill_packs(fl_tri_mesh *mesh, uint32_t at, const uint32_t *faces, uint32_t first,
+                       uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        fl_tri_pack *pack = &mesh->packs[at + i / 8];
+        uint32_t face = faces ? faces[i] : first + i;
+        if (i % 8 == 0)
+            clear_pack(pack);
+        pack->face[i % 8] = face;
+        for (uint32_t corner = 0; corner < 3; corner++)
+            for (uint32_t axis = 0; axis < 3; axis++)
+                pack->corner[corner][axis][i % 8] =
+                    mesh->position[3 * (size_t)mesh->index[3 * (size_t)face + corner] + axis];
+    }
+}
+
+static fl_bvh_box face_box(const fl_tri_mesh *mesh, uint32_t face)
+{
+    fl_bvh_box box;
+    for (uint32_t a = 0; a < 3; a++) {
+        float x[3];
+        for (uint32_t k = 0; k < 3; k++)
+            x[k] = mesh->position[3 * (size_t)mesh->index[3 * (size_t)face + k] + a];
+        box.lo[a] = x[0] < x[1] ? x[0] : x[1];
+        box.hi[a] = x[0] > x[1] ? x[0] : x[1];
+        box.lo[a] = x[2] < box.lo[a] ? x[2] : box.lo[a];
+        box.hi[a] = x[2] > box.hi[a] ? x[2] : box.hi[a];
+    }
+    return box;
+}
+
+static float largest_coordinate(const fl_tri_mesh *mesh)
+{
+    float largest = 0.0f;
+    for (int a = 0; a < 3; a++) {
+        float lo = fabsf(mesh->box_lo[a]), hi = fabsf(mesh->box_hi[a]);
+        largest = lo > largest ? lo : largest;
+        largest = hi > largest ? hi : largest;
+    }
+    return largest;
+}
+
+static void fill_bvh_packs(void *context, uint32_t begin, uint32_t end, uint32_t thread)
+{
+    fl_tri_mesh *mesh = context;
+    (void)thread;
+    for (uint32_t k = begin; k < end; k++) {
+        const uint32_t *items = &mesh->bvh->items[(size_t)k * FL_BVH_WIDTH];
+        uint32_t count = 1;
+        while (count < FL_BVH_WIDTH && items[count] != FL_NONE)
+            count++;
+        fill_packs(mesh, k, items, 0, count);
+    }
+}
+
+static bool allocate_packs(fl_compiler *c, fl_tri_mesh *mesh, uint32_t count)
+{
+    mesh->pack_count = count;
+    mesh->packs = fl_arena_alloc(&c->out->arena, count, sizeof *mesh->packs);
+    return mesh->packs != NULL;
+}
+
+static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
+{
+    mesh->bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *mesh->bvh);
+    if (!mesh->bvh ||
+        !fl_bvh_build(mesh->bvh, &c->out->arena, boxes, mesh->face_count, FL_BOX_PAD * largest,
+                      FL_ORIGIN_PAD, c->pool) ||
+        !allocate_packs(c, mesh, mesh->bvh->leaf_count))
+        return false;
+    fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);
+    c->out->accel_bytes += mesh->bvh->node_count * sizeof *mesh->bvh->nodes +
+                           mesh->bvh->leaf_count * FL_BVH_WIDTH * sizeof *mesh->bvh->items;
+    return true;
+}
+
+static bool accel_octree(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
+{
+    uint32_t height = c->options->octree_height ? c->options->octree_height : FL_OCTREE_HEIGHT_MAX;
+    fl_octree *tree = fl_arena_alloc(&c->out->arena, 1, sizeof *tree);
+    mesh->octree = tree;
+    /* Twice the widening: the planes of small cells come about by eight roundings. */
+    if (!tree ||
+        !fl_octree_build(tree, &c->out->arena, boxes, mesh->face_count,
+                         fl_min_u32(height, FL_OCTREE_HEIGHT_MAX), 2.0f * FL_BOX_PAD * largest,
+                         FL_ORIGIN_PAD) ||
+        !allocate_packs(c, mesh, tree->pack_count))
+        return false;
+    for (uint32_t k = 0; k < tree->leaf_count; k++) {
+        const fl_octree_leaf *leaf = &tree->leaves[k];
+        fill_packs(mesh, leaf->first_pack, tree->items + leaf->first, 0, leaf->count);
+    }
+    c->out->accel_bytes += tree->node_count * sizeof *tree->nodes +
+                           tree->leaf_count * sizeof *tree->leaves +
+                           tree->item_count * sizeof *tree->items;
+    return true;
+}
+
+bool fl_compile_accel(fl_compiler *c, fl_tri_mesh *mesh)
+{
+    float largest = largest_coordinate(mesh);
+    fl_arena scratch = {0};
+    fl_bvh_box *boxes = fl_arena_alloc(&scratch, mesh->face_count, sizeof *boxes);
+    bool ok = boxes != NULL;
+    for (uint32_t f = 0; ok && f < mesh->face_count; f++)
+        boxes[f] = face_box(mesh, f);
+    if (ok && c->options->accel == FL_ACCEL_BVH) {
+        ok = accel_bvh(c, mesh, boxes, largest);
+    } else if (ok && c->options->accel == FL_ACCEL_OCTREE) {
+        ok = accel_octree(c, mesh, boxes, largest);
+    } else if (ok) {
+        ok = allocate_packs(c, mesh, (mesh->face_count + 7) / 8);
+        if (ok)
+            fill_packs(mesh, 0, NULL, 0, mesh->face_count);
+    }
+    c->out->accel_bytes += ok ? mesh->pack_count * sizeof *mesh->packs : 0;
+    fl_arena_deinit(&scratch);
+    return ok || fl_out_of_memory(c->diags, "the acceleration structure of a mesh");
+}
+
+/* --- Objects --------------------------------------------------------------------------------- */
+
+/* What the boxes of the objects' hierarchy are widened by, in roundings. Tests of spheres and
+ * patches err by less than 32 of the coordinates they see; a transform multiplies that by what its
+ * rounding does to a ray. */
+static const double entry_roundings = 64.0;
+
+typedef struct entry_box {
+    fl_bvh_box box;
+    double gain;
+} entry_box;
+
+static entry_box bounds_of(const fl_geometry *g, const fl_entry *entry)
+{
+    fl_box box = fl_box_empty();
+    double gain = 1.0, base = 0.0;
+    if (entry->is_instance) {
+        const fl_instance *instance = &g->instances[entry->index];
+        const fl_bvh_box *b = &instance->box;
+        for (int k = 0; k < 8; k++) {
+            fl_vec3 corner = {(double)(k & 1 ? b->hi[0] : b->lo[0]),
+                              (double)(k & 2 ? b->hi[1] : b->lo[1]),
+                              (double)(k & 4 ? b->hi[2] : b->lo[2])};
+            box = fl_box_grow(box, fl_affine_point(&instance->to_world_exact, corner));
+        }
+        gain = instance->error_gain;
+        base = instance->error_base;
+    } else if (entry->kind == FL_OBJECT_SPHERE) {
+        double r = g->spheres.radius[entry->index];
+        box = fl_box_grow(box, fl_v3_add(g->spheres.center[entry->index], fl_v3(r, r, r)));
+        box = fl_box_grow(box, fl_v3_sub(g->spheres.center[entry->index], fl_v3(r, r, r)));
+    } else if (entry->kind == FL_OBJECT_REVOLUTION) {
+        const fl_bvh_box *b = &g->revolutions.bounds[entry->index];
+        box.lo = fl_v3((double)b->lo[0], (double)b->lo[1], (double)b->lo[2]);
+        box.hi = fl_v3((double)b->hi[0], (double)b->hi[1], (double)b->hi[2]);
+    } else {
+        /* Sides from their duals: u is orthogonal to dual v and to n, and u . dual u = 1. */
+        const fl_patches *q = &g->patches;
+        fl_vec3 du = q->dual_u[entry->index], dv = q->dual_v[entry->index];
+        fl_vec3 u = fl_v3_cross(dv, q->normal[entry->index]);
+        fl_vec3 v = fl_v3_cross(q->normal[entry->index], du);
+        u = fl_v3_scale(u, 1.0 / fl_v3_dot(u, du));
+        v = fl_v3_scale(v, 1.0 / fl_v3_dot(v, dv));
+        fl_vec3 corner = q->corner[entry->index];
+        double low = q->is_disk[entry->index] ? -1.0 : 0.0;
+        for (int k = 0; k < 4; k++)
+            box = fl_box_grow(
+                box, fl_v3_mad(fl_v3_mad(corner, u, k & 1 ? 1.0 : low), v, k & 2 ? 1.0 : low));
+        gain = 3.0 * fl_max(fl_v3_length(u) * fl_v3_length(du), fl_v3_length(v) * fl_v3_length(dv));
+    }
+    double size = fl_max(fl_v3_max_abs(box.lo), fl_v3_max_abs(box.hi));
+    double pad = entry_roundings * FL_EPSILON * (gain * size + base);
+    entry_box out = {.gain = gain};
+    out.box =
+        (fl_bvh_box){{(float)(box.lo.x - pad), (float)(box.lo.y - pad), (float)(box.lo.z - pad)},
+                     {(float)(box.hi.x + pad), (float)(box.hi.y + pad), (float)(box.hi.z + pad)}};
+    return out;
+}
+
+static bool build_object_bvh(fl_compiler *c)
+{
+    fl_geometry *g = c->geometry;
+    fl_arena scratch = {0};
+    fl_bvh_box *boxes = fl_arena_alloc(&scratch, g->bounded_entry_count, sizeof *boxes);
+    g->object_bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *g->object_bvh);
+    bool ok = boxes && g->object_bvh;
+    double gain = 1.0;
+    for (uint32_t k = 0; ok && k < g->bounded_entry_count; k++) {
+        entry_box b = bounds_of(g, &g->entries[k]);
+        boxes[k] = b.box;
+        gain = fl_max(b.gain, gain);
+    }
+    ok = ok && fl_bvh_build(g->object_bvh, &c->out->arena, boxes, g->bounded_entry_count, 0.0f,
+                            (float)(entry_roundings * FL_EPSILON * gain), c->pool);
+    fl_arena_deinit(&scratch);
+    if (!ok)
+        return fl_out_of_memory(c->diags, "the hierarchy of objects");
+    c->out->accel_bytes += g->object_bvh->node_count * sizeof *g->object_bvh->nodes;
+    return true;
+}
+
+bool fl_compile_entries(fl_compiler *c)
+{
+    fl_geometry *g = c->geometry;
+    size_t most = (size_t)g->spheres.baked_count + g->patches.baked_count +
+                  g->revolutions.baked_count + g->instance_count;
+    g->entries = fl_arena_alloc(&c->out->arena, most, sizeof *g->entries);
+    if (!g->entries)
+        return fl_out_of_memory(c->diags, "the hierarchy of objects");
+    const struct {
+        fl_object_kind kind;
+        uint32_t count;
+    } baked[] = {{FL_OBJECT_SPHERE, g->spheres.baked_count},
+                 {FL_OBJECT_SQUARE, g->patches.baked_count},
+                 {FL_OBJECT_REVOLUTION, g->revolutions.baked_count}};
+    uint32_t count = 0;
+    for (size_t b = 0; b < FL_COUNT_OF(baked); b++)
+        for (uint32_t k = 0; k < baked[b].count; k++)
+            g->entries[count++] = (fl_entry){false, baked[b].kind, k};
+    for (uint32_t k = 0; k < g->instance_count; k++)
+        if (g->instances[k].kind != FL_OBJECT_PLANE)
+            g->entries[count++] = (fl_entry){true, g->instances[k].kind, k};
+    g->bounded_entry_count = count;
+    for (uint32_t k = 0; k < g->instance_count; k++)
+        if (g->instances[k].kind == FL_OBJECT_PLANE)
+            g->entries[count++] = (fl_entry){true, g->instances[k].kind, k};
+    g->entry_count = count;
+    if (c->options->accel != FL_ACCEL_BVH || g->bounded_entry_count <= FL_OBJECT_BVH_MIN)
+        return true;
+    return build_object_bvh(c);
+}

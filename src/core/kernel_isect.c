@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Nearest-hit and any-hit kernels. Compiled once an instruction set, with FL_W and FL_ISA defined
+ * (wide.h).
+ */
+#include "core/kernel_isect_shapes.h"
+#include "core/kernel_isect_stream.h"
+#include "core/resolve.h"
+
+/* --- Objects with a transform, and meshes ---------------------------------------------------- */
+
+/* Rays [first, first + count) of the chunk against a mesh in its own space. */
+FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint32_t first, uint32_t count,
+                                  const fl_instance *instance, const bool is_any)
+{
+    _Alignas(64) float local[6][CHUNK_RAYS], boxes[9][CHUNK_RAYS];
+    const float *o[3] = {c->o[0], c->o[1], c->o[2]}, *d[3] = {c->d[0], c->d[1], c->d[2]};
+    uint64_t lanes = 0;
+    for (uint32_t i = first; i < first + count; i += FL_W) {
+        fl_wm alive = chunk_alive(c, i);
+        if (!fl_wm_any(alive))
+            continue;
+        bundle b = bundle_load(c, i);
+        if (!instance->is_identity) {
+            b = bundle_transform(instance->to_object, &b);
+            for (int a = 0; a < 3; a++) {
+                fl_wf_store(&local[a][i], b.o[a]);
+                fl_wf_store(&local[3 + a][i], b.d[a]);
+            }
+        }
+        fl_wf near;
+        slabs s = slabs_of(&b, FL_ORIGIN_PAD);
+        fl_wm meets =
+            slabs_meet(&s, instance->box.lo, instance->box.hi, fl_wf_load(c->t + i), &near);
+        lanes |= (uint64_t)fl_wm_bits(meets & alive) << i;
+        for (int a = 0; a < 3; a++) {
+            fl_wf_store(&boxes[a][i], s.enter_o[a]);
+            fl_wf_store(&boxes[3 + a][i], s.leave_o[a]);
+            fl_wf_store(&boxes[6 + a][i], s.inverse[a]);
+        }
+    }
+    if (!instance->is_identity)
+        for (int a = 0; a < 3; a++) {
+            o[a] = local[a];
+            d[a] = local[3 + a];
+        }
+    mesh_target target = {&j->geometry->meshes[instance->index], instance->object,
+                          &j->context->counts};
+    if (lanes)
+        chunk_meet_mesh(c, lanes, o, d, boxes, &target, is_any);
+}
+
+FL_INLINE uint32_t lane_count(fl_wm m)
+{
+    return (uint32_t)__builtin_popcount(fl_wm_bits(m));
+}
+
+static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
+                                       const fl_instance *instance, const bool is_any)
+{
+    static const fl_vec3 no_shift = {0.0, 0.0, 0.0};
+    const fl_geometry *g = j->geometry;
+    fl_wm alive = chunk_alive(c, i), own = chunk_starts_on(c, i, instance->object);
+    if (!fl_wm_any(alive))
+        return;
+    bundle b = bundle_load(c, i);
+    b = bundle_transform(instance->to_object, &b);
+    fl_wf t;
+    if (instance->kind == FL_OBJECT_REVOLUTION) {
+        t = hit_revolution(j, &g->revolutions, instance->index, &b, &no_shift, fl_wf_load(c->t + i),
+                           is_any);
+    } else {
+        j->context->counts.primitive_tests += lane_count(alive);
+        if (instance->kind == FL_OBJECT_PLANE)
+            t = hit_plane(&g->planes, instance->index, &b, own);
+        else if (instance->kind == FL_OBJECT_SPHERE)
+            t = hit_sphere(&g->spheres, instance->index, &b, own);
+        else
+            t = hit_patch(&g->patches, instance->index, &b, own);
+    }
+    chunk_accept(c, i, t, instance->object, is_any);
+}
+
+FL_INLINE void meet_instance(const job *j, chunk *c, uint32_t first, uint32_t count,
+                             const fl_instance *instance, const bool is_any)
+{
+    if (instance->kind == FL_OBJECT_MESH)
+        meet_mesh_instance(j, c, first, count, instance, is_any);
+    else
+        for (uint32_t i = first; i < first + count; i += FL_W)
+            meet_shape_instance(j, c, i, instance, is_any);
+}
+
+/* --- Objects in world space ------------------------------------------------------------------ */
+
+FL_INLINE void meet_baked(const job *j, chunk *c, uint32_t i, const bundle *b, fl_object_kind kind,
+                          uint32_t k, const bool is_any)
+{
+    const fl_geometry *g = j->geometry;
+    uint32_t object;
+    fl_wf t;
+    if (kind == FL_OBJECT_SPHERE) {
+        object = g->spheres.object[k];
+        t = hit_sphere(&g->spheres, k, b, chunk_starts_on(c, i, object));
+    } else if (kind == FL_OBJECT_PLANE) {
+        object = g->planes.object[k];
+        t = hit_plane(&g->planes, k, b, chunk_starts_on(c, i, object));
+    } else if (kind == FL_OBJECT_SQUARE) {
+        object = g->patches.object[k];
+        t = hit_patch(&g->patches, k, b, chunk_starts_on(c, i, object));
+    } else {
+        object = g->revolutions.object[k];
+        t = hit_revolution(j, &g->revolutions, k, b, &g->revolutions.shift, fl_wf_load(c->t + i),
+                           is_any);
+    }
+    chunk_accept(c, i, t, object, is_any);
+}
+
+/* All baked objects of one kind, one after the other. */
+FL_INLINE void meet_all_baked(const job *j, chunk *c, uint32_t i, const bundle *b,
+                              fl_object_kind kind, uint32_t count, const bool is_any)
+{
+    fl_isect_counts *counts = &j->context->counts;
+    for (uint32_t k = 0; k < count; k++) {
+        fl_wm alive = chunk_alive(c, i);
+        if (is_any && !fl_wm_any(alive))
+            return;
+        if (kind != FL_OBJECT_REVOLUTION)
+            counts->primitive_tests += lane_count(alive);
+        meet_baked(j, c, i, b, kind, k, is_any);
+    }
+}
+
+/* --- The hierarchy of objects: a bundle goes down together ------------------------------------ */
+
+typedef struct bundle_visit {
+    uint32_t child, lanes;
+} bundle_visit;
+
+static inline void meet_leaf_entries(const job *j, chunk *c, uint32_t i, const bundle *b,
+                                     uint32_t child, const bool is_any)
+{
+    const fl_geometry *g = j->geometry;
+    const uint32_t *items = &g->object_bvh->items[(size_t)FL_BVH_LEAF_INDEX(child) * FL_BVH_WIDTH];
+    for (uint32_t n = 0; n < FL_BVH_LEAF_COUNT(child); n++) {
+        const fl_entry *entry = &g->entries[items[n]];
+        if (entry->is_instance) {
+            meet_instance(j, c, i, FL_W, &g->instances[entry->index], is_any);
+            continue;
+        }
+        if (entry->kind != FL_OBJECT_REVOLUTION)
+            j->context->counts.primitive_tests += lane_count(chunk_alive(c, i));
+        meet_baked(j, c, i, b, entry->kind, entry->index, is_any);
+    }
+}
+
+static void walk_objects(const job *j, chunk *c, uint32_t i, const bundle *b, const bool is_any)
+{
+    const fl_bvh *bvh = j->geometry->object_bvh;
+    visit stack[FL_BVH_STACK_MAX];
+    uint32_t height = 0, child = 0;
+    slabs s = slabs_of(b, bvh->origin_pad);
+    for (;;) {
+        if (child & FL_BVH_LEAF) {
+            meet_leaf_entries(j, c, i, b, child, is_any);
+        } else {
+            const fl_bvh_node *node = &bvh->nodes[child];
+            fl_wf best = fl_wf_load(c->t + i);
+            fl_wm alive = best > 0.0f;
+            float near[FL_BVH_WIDTH];
+            uint32_t bits = 0;
+            if (!fl_wm_any(alive))
+                return;
+            j->context->counts.node_visits += lane_count(alive);
+            for (uint32_t k = 0; k < FL_BVH_WIDTH && node->child[k] != FL_NONE; k++) {
+                float lo[3] = {node->plane[0][k], node->plane[2][k], node->plane[4][k]};
+                float hi[3] = {node->plane[1][k], node->plane[3][k], node->plane[5][k]};
+                fl_wf enter;
+                uint32_t lanes = fl_wm_bits(slabs_meet(&s, lo, hi, best, &enter) & alive);
+                near[k] = INFINITY;
+                bits |= (uint32_t)(lanes != 0) << k;
+                for (; lanes; lanes &= lanes - 1) {
+                    float e = enter[__builtin_ctz(lanes)];
+                    near[k] = e < near[k] ? e : near[k];
+                }
+            }
+            height = push_sorted(stack, height, node, near, bits);
+        }
+        do {
+            if (height == 0)
+                return;
+            child = stack[--height].child;
+        } while (!fl_wm_any(fl_wf_load(c->t + i) >= stack[height].near));
+    }
+}
+
+/* --- Whole chunks ---------------------------------------------------------------------------- */
+
+FL_INLINE void meet_geometry(const job *j, chunk *c, const bool is_any)
+{
+    const fl_geometry *g = j->geometry;
+    for (uint32_t i = 0; i < c->count; i += FL_W) {
+        if (!fl_wm_any(chunk_alive(c, i)))
+            continue;
+        bundle b = bundle_load(c, i);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_PLANE, g->planes.baked_count, is_any);
+        if (g->object_bvh) {
+            walk_objects(j, c, i, &b, is_any);
+            continue;
+        }
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SPHERE, g->spheres.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SQUARE, g->patches.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_REVOLUTION, g->revolutions.baked_count, is_any);
+    }
+    /* With a hierarchy, only what has no bounds is left. */
+    for (uint32_t k = g->object_bvh ? g->bounded_entry_count : 0; k < g->entry_count; k++)
+        if (g->entries[k].is_instance)
+            meet_instance(j, c, 0, c->count, &g->instances[g->entries[k].index], is_any);
+}
+
+FL_INLINE chunk chunk_of(const fl_rays *rays, uint32_t first, float *t, uint32_t *object,
+                         uint32_t *prim)
+{
+    uint32_t left = fl_min_u32(rays->count - first, CHUNK_RAYS);
+    chunk c = {.o = {rays->ox + first, rays->oy + first, rays->oz + first},
+               .d = {rays->dx + first, rays->dy + first, rays->dz + first},
+               .t = t,
+               .object = object,
+               .prim = prim,
+               .source_object = rays->source_object + first,
+               .source_prim = rays->source_prim + first,
+               .count = (left + FL_W - 1) / FL_W * FL_W};
+    for (uint32_t i = 0; i < c.count; i += FL_W) {
+        fl_wf_store(t + i, fl_wf_load(rays->t_max + first + i));
+        /* Least of all names, so that nothing at t_max itself is nearer. */
+        fl_wu_store(object + i, fl_wu_set(0));
+        fl_wu_store(prim + i, fl_wu_set(0));
+    }
+    return c;
+}
+
+static void trace_nearest(const fl_geometry *geometry, const fl_rays *rays, fl_hits *out_hits,
+                          fl_isect_context *context)
+{
+    job j = {geometry, context};
+    for (uint32_t first = 0; first < rays->count; first += CHUNK_RAYS) {
+        if (fl_is_cancelled(context))
+            return;
+        chunk c = chunk_of(rays, first, out_hits->t + first, out_hits->object + first,
+                           out_hits->prim + first);
+        meet_geometry(&j, &c, false);
+        for (uint32_t i = 0; i < c.count; i += FL_W) {
+            fl_wf t = fl_wf_load(c.t + i);
+            fl_wm hit = t < fl_wf_load(rays->t_max + first + i);
+            fl_wf_store(c.t + i, fl_wf_select(hit, t, fl_wf_set(INFINITY)));
+            fl_wu none = fl_wu_set(FL_NONE);
+            fl_wu_store(c.object + i, fl_wu_select(hit, fl_wu_load(c.object + i), none));
+            fl_wu_store(c.prim + i, fl_wu_select(hit, fl_wu_load(c.prim + i), none));
+        }
+    }
+}
+
+static void trace_any(const fl_geometry *geometry, const fl_rays *rays, uint32_t *out_blocked,
+                      fl_isect_context *context)
+{
+    job j = {geometry, context};
+    _Alignas(64) float t[CHUNK_RAYS];
+    _Alignas(64) uint32_t object[CHUNK_RAYS], prim[CHUNK_RAYS];
+    for (uint32_t first = 0; first < rays->count; first += CHUNK_RAYS) {
+        if (fl_is_cancelled(context))
+            return;
+        chunk c = chunk_of(rays, first, t, object, prim);
+        meet_geometry(&j, &c, true);
+        for (uint32_t i = 0; i < c.count; i += FL_W) {
+            fl_wm blocked = fl_wf_load(t + i) < fl_wf_load(rays->t_max + first + i);
+            fl_wu_store(out_blocked + first + i, (fl_wu)blocked & 1u);
+        }
+    }
+}
+
+const fl_isect_kernels FL_ISA_NAME(fl_isect_kernels) = {trace_nearest, trace_any, fl_resolve};

@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 4, private: one ray against a mesh, through its hierarchy, its octree or all of its packs.
+ *
+ * The triangle test is watertight [Woop, Benthin, Wald 2013]: corners are translated to the ray's
+ * origin and sheared so that the ray is an axis; signs of three edge functions decide. In float,
+ * plain multiply and subtract never gets a sign wrong, it can only yield 0. So floats, eight
+ * triangles at a time, find the candidates, a 0 counting as either sign, and doubles decide each:
+ * products of floats are exact in double, hence so are the signs, two triangles agree about their
+ * common edge, and t, a mean of the corners' depths with weights of one sign, lies within the
+ * triangle's own depth however thin it is. That is what lets boxes cull (FL_BOX_PAD).
+ */
+#ifndef FL_KERNEL_ISECT_MESH_H
+#define FL_KERNEL_ISECT_MESH_H
+
+#include "core/kernel_isect.h"
+
+/** A single ray in the space of a mesh. */
+typedef struct ray {
+    float enter_o[3], leave_o[3], inverse[3]; /* As in slabs. */
+    int down[3];                              /* 1 where the ray descends. */
+    float t;                                  /* Nearest so far; for any-hit -1 once blocked. */
+    float o[3];
+    float shear_x, shear_y, d_z; /* Along kx and ky for a step along kz, and d there. */
+    int kx, ky, kz;              /* kz: the axis in which d is largest. */
+    uint32_t object, prim;
+    uint32_t source_object, source_prim;
+} ray;
+
+/** What all rays that meet a mesh have in common. */
+typedef struct mesh_target {
+    const fl_tri_mesh *mesh;
+    uint32_t object; /* Of all faces, unless they have their own. */
+    fl_isect_counts *counts;
+} mesh_target;
+
+static inline void ray_init(ray *r, const float o[3], const float d[3])
+{
+    float x = fabsf(d[0]), y = fabsf(d[1]), z = fabsf(d[2]);
+    r->kz = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+    r->kx = r->kz == 2 ? 0 : r->kz + 1;
+    r->ky = r->kx == 2 ? 0 : r->kx + 1;
+    r->d_z = d[r->kz];
+    r->shear_x = d[r->kx] / r->d_z;
+    r->shear_y = d[r->ky] / r->d_z;
+    for (int a = 0; a < 3; a++) {
+        r->o[a] = o[a];
+        r->down[a] = r->inverse[a] < 0.0f;
+    }
+}
+
+/* --- Triangles ------------------------------------------------------------------------------- */
+
+/* Decide one candidate by its sheared corners. */
+static inline bool triangle_decide(const ray *r, const float x[3], const float y[3],
+                                   const float z[3], float *out_t)
+{
+    double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
+    double v = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
+    double w = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
+    if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0))
+        return false;
+    double area = u + v + w;
+    if (area == 0.0)
+        return false;
+    double depth =
+        (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / (area * (double)r->d_z);
+    *out_t = (float)depth;
+    return *out_t > 0.0f;
+}
+
+FL_INLINE void ray_accept(ray *r, const mesh_target *target, float t, uint32_t face,
+                          const bool is_any)
+{
+    if (!(t <= r->t))
+        return;
+    uint32_t object = target->object, prim = face;
+    if (target->mesh->face_object) {
+        object = target->mesh->face_object[face];
+        prim = 0;
+    }
+    if (object == r->source_object && prim == r->source_prim)
+        return;
+    if (is_any) {
+        if (t < r->t)
+            r->t = -1.0f;
+        return;
+    }
+    if (t < r->t || object < r->object || (object == r->object && prim < r->prim)) {
+        r->t = t;
+        r->object = object;
+        r->prim = prim;
+    }
+}
+
+/* FL_W corners of the pack from place `at`, translated and sheared. */
+typedef struct corners {
+    fl_wf x[3], y[3], z[3];
+} corners;
+
+FL_INLINE corners shear_corners(const ray *r, const fl_tri_pack *pack, int at)
+{
+    corners c;
+    for (int k = 0; k < 3; k++) {
+        c.z[k] = fl_wf_load(&pack->corner[k][r->kz][at]) - r->o[r->kz];
+        c.x[k] = fl_wf_load(&pack->corner[k][r->kx][at]) - r->o[r->kx] - r->shear_x * c.z[k];
+        c.y[k] = fl_wf_load(&pack->corner[k][r->ky][at]) - r->o[r->ky] - r->shear_y * c.z[k];
+    }
+    return c;
+}
+
+/* Lanes that may be hit. NaN corners never are. */
+FL_INLINE uint32_t candidates(const corners *c)
+{
+    fl_wf u = c->x[2] * c->y[1] - c->y[2] * c->x[1];
+    fl_wf v = c->x[0] * c->y[2] - c->y[0] * c->x[2];
+    fl_wf w = c->x[1] * c->y[0] - c->y[1] * c->x[0];
+    fl_wm some_negative = (u < 0.0f) | (v < 0.0f) | (w < 0.0f);
+    fl_wm some_positive = (u > 0.0f) | (v > 0.0f) | (w > 0.0f);
+    fl_wm is_number = w == w;
+    return fl_wm_bits(is_number & ~(some_negative & some_positive));
+}
+
+FL_INLINE void ray_meet_pack(ray *r, const mesh_target *target, const fl_tri_pack *pack,
+                             const bool is_any)
+{
+    for (int at = 0; at < 8; at += FL_W) {
+        corners c = shear_corners(r, pack, at);
+        for (uint32_t lanes = candidates(&c); lanes; lanes &= lanes - 1) {
+            int i = __builtin_ctz(lanes);
+            float x[3] = {c.x[0][i], c.x[1][i], c.x[2][i]};
+            float y[3] = {c.y[0][i], c.y[1][i], c.y[2][i]};
+            float z[3] = {c.z[0][i], c.z[1][i], c.z[2][i]}, t;
+            if (triangle_decide(r, x, y, z, &t))
+                ray_accept(r, target, t, pack->face[at + i], is_any);
+        }
+    }
+}
+
+/* --- Hierarchy of boxes ---------------------------------------------------------------------- */
+
+typedef struct visit {
+    float near;
+    uint32_t child;
+} visit;
+
+/* Children of `node` that the ray may meet at 0 < t <= r->t, as bits; distances to out_near. */
+FL_INLINE uint32_t ray_meet_node(const ray *r, const fl_bvh_node *node, float out_near[8])
+{
+    uint32_t bits = 0;
+    for (int at = 0; at < 8; at += FL_W) {
+        fl_wf near = fl_wf_set(0.0f), far = fl_wf_set(r->t);
+        for (int a = 0; a < 3; a++) {
+            const float *enter = node->plane[2 * a + r->down[a]];
+            const float *leave = node->plane[2 * a + 1 - r->down[a]];
+            near = fl_wf_max((fl_wf_load(enter + at) - r->enter_o[a]) * r->inverse[a], near);
+            far = fl_wf_min((fl_wf_load(leave + at) - r->leave_o[a]) * r->inverse[a], far);
+        }
+        fl_wf_store(out_near + at, near);
+        bits |= fl_wm_bits(near <= far) << at;
+    }
+    return bits;
+}
+
+/* Push the children of `bits`, farthest first; returns the new height. */
+static inline uint32_t push_sorted(visit *stack, uint32_t height, const fl_bvh_node *node,
+                                   const float near[8], uint32_t bits)
+{
+    uint32_t base = height;
+    for (; bits; bits &= bits - 1) {
+        int k = __builtin_ctz(bits);
+        uint32_t i = height++;
+        for (; i > base && stack[i - 1].near < near[k]; i--)
+            stack[i] = stack[i - 1];
+        stack[i] = (visit){near[k], node->child[k]};
+    }
+    return height;
+}
+
+static inline void ray_walk_bvh(ray *r, const mesh_target *target, const bool is_any)
+{
+    const fl_bvh *bvh = target->mesh->bvh;
+    const fl_tri_pack *packs = target->mesh->packs;
+    visit stack[FL_BVH_STACK_MAX];
+    uint32_t height = 0, child = 0;
+    for (;;) {
+        if (child & FL_BVH_LEAF) {
+            target->counts->primitive_tests += FL_BVH_LEAF_COUNT(child);
+            ray_meet_pack(r, target, &packs[FL_BVH_LEAF_INDEX(child)], is_any);
+            if (is_any && r->t < 0.0f)
+                return;
+        } else {
+            _Alignas(32) float near[8];
+            const fl_bvh_node *node = &bvh->nodes[child];
+            uint32_t bits = ray_meet_node(r, node, near);
+            target->counts->node_visits++;
+            if (bits && (bits & (bits - 1)) == 0) {
+                child = node->child[__builtin_ctz(bits)];
+                continue;
+            }
+            height = push_sorted(stack, height, node, near, bits);
+        }
+        do {
+            if (height == 0)
+                return;
+            child = stack[--height].child;
+        } while (stack[height].near > r->t);
+    }
+}
+
+/* --- Octree ---------------------------------------------------------------------------------- */
+
+typedef struct cell_visit {
+    float near;
+    uint32_t child;
+    float lo[3], size[3];
+} cell_visit;
+
+/* Mirrored into the first octant, every ray meets the octants in an order that ascending numbers
+ * respect: number k of the mirrored cell is octant k ^ mirror of the true one. Pushed descending,
+ * so the nearest is popped first. */
+static inline uint32_t push_octants(const ray *r, const fl_octree *tree, const cell_visit *cell,
+                                    cell_visit *stack, uint32_t height)
+{
+    const fl_octree_node *node = &tree->nodes[cell->child];
+    uint32_t mirror = (uint32_t)(r->down[0] | r->down[1] << 1 | r->down[2] << 2);
+    float near[3][2], far[3][2], half[3];
+    for (int a = 0; a < 3; a++) {
+        half[a] = 0.5f * cell->size[a];
+        for (uint32_t h = 0; h < 2; h++) {
+            bool is_upper = (h ^ (uint32_t)r->down[a]) != 0;
+            float lo = is_upper ? cell->lo[a] + half[a] : cell->lo[a], hi = lo + half[a];
+            lo = lo - tree->pad;
+            hi = hi + tree->pad;
+            near[a][h] = ((r->down[a] ? hi : lo) - r->enter_o[a]) * r->inverse[a];
+            far[a][h] = ((r->down[a] ? lo : hi) - r->leave_o[a]) * r->inverse[a];
+        }
+    }
+    for (uint32_t k = 8; k-- > 0;) {
+        uint32_t octant = k ^ mirror;
+        if (node->child[octant] == FL_NONE)
+            continue;
+        cell_visit c = {0.0f, node->child[octant], {0}, {half[0], half[1], half[2]}};
+        float leave = r->t;
+        for (int a = 0; a < 3; a++) {
+            uint32_t h = k >> a & 1u;
+            c.near = near[a][h] > c.near ? near[a][h] : c.near;
+            leave = far[a][h] < leave ? far[a][h] : leave;
+            c.lo[a] = octant >> a & 1u ? cell->lo[a] + half[a] : cell->lo[a];
+        }
+        if (c.near <= leave)
+            stack[height++] = c;
+    }
+    return height;
+}
+
+static void ray_walk_octree(ray *r, const mesh_target *target, const bool is_any)
+{
+    const fl_octree *tree = target->mesh->octree;
+    cell_visit stack[FL_OCTREE_STACK_MAX + 1];
+    stack[0] = (cell_visit){0.0f,
+                            tree->root,
+                            {tree->lo[0], tree->lo[1], tree->lo[2]},
+                            {tree->size[0], tree->size[1], tree->size[2]}};
+    for (uint32_t height = 1; height > 0;) {
+        cell_visit cell = stack[--height];
+        if (cell.near > r->t)
+            continue;
+        if (!(cell.child & FL_BVH_LEAF)) {
+            target->counts->node_visits++;
+            height = push_octants(r, tree, &cell, stack, height);
+            continue;
+        }
+        const fl_octree_leaf *leaf = &tree->leaves[cell.child & ~FL_BVH_LEAF];
+        target->counts->primitive_tests += leaf->count;
+        for (uint32_t k = 0; k < (leaf->count + 7) / 8; k++)
+            ray_meet_pack(r, target, &target->mesh->packs[leaf->first_pack + k], is_any);
+        if (is_any && r->t < 0.0f)
+            return;
+    }
+}
+
+/* --- All of them ----------------------------------------------------------------------------- */
+
+static void ray_walk_all(ray *r, const mesh_target *target, const bool is_any)
+{
+    const fl_tri_mesh *mesh = target->mesh;
+    for (uint32_t k = 0; k < mesh->pack_count; k++) {
+        ray_meet_pack(r, target, &mesh->packs[k], is_any);
+        if (is_any && r->t < 0.0f)
+            break;
+    }
+    target->counts->primitive_tests += mesh->face_count;
+}
+
+FL_INLINE void ray_walk(ray *r, const mesh_target *target, const bool is_any)
+{
+    if (target->mesh->bvh)
+        ray_walk_bvh(r, target, is_any);
+    else if (target->mesh->octree)
+        ray_walk_octree(r, target, is_any);
+    else
+        ray_walk_all(r, target, is_any);
+}
+
+#endif

@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 4, private: FL_W rays against one plane, sphere, patch or surface of revolution. Each
+ * returns t, or something that is not above 0 (or NaN) for no hit.
+ */
+#ifndef FL_KERNEL_ISECT_SHAPES_H
+#define FL_KERNEL_ISECT_SHAPES_H
+
+#include "core/kernel_isect.h"
+
+/* A plane is not met by a ray that starts on it: decision 13. */
+FL_INLINE fl_wf hit_plane(const fl_planes *p, uint32_t k, const bundle *b, fl_wm own)
+{
+    fl_wf n[3] = {fl_wf_set(p->nx[k]), fl_wf_set(p->ny[k]), fl_wf_set(p->nz[k])};
+    fl_wf t = (p->d[k] - dot(n, b->o)) / dot(n, b->d);
+    return fl_wf_select(own, fl_wf_set(-1.0f), t);
+}
+
+/* Distance of the centre to the line by the perpendicular vector l, not by the discriminant's
+ * difference of large squares, and both roots without cancellation [Haines, Gunther,
+ * Akenine-Moller, Ray Tracing Gems, chapter 7]. A ray that starts on the sphere leaves it by the
+ * exact chord. */
+FL_INLINE fl_wf hit_sphere(const fl_spheres *s, uint32_t k, const bundle *b, fl_wm own)
+{
+    fl_wf f[3] = {b->o[0] - s->cx[k], b->o[1] - s->cy[k], b->o[2] - s->cz[k]};
+    fl_wf square = fl_wf_set(s->r[k]) * s->r[k];
+    fl_wf dd = dot(b->d, b->d), fd = -dot(f, b->d), middle = fd / dd;
+    fl_wf l[3] = {f[0] + middle * b->d[0], f[1] + middle * b->d[1], f[2] + middle * b->d[2]};
+    fl_wf rest = square - dot(l, l);
+    fl_wm meets = rest >= 0.0f;
+    fl_wf root = fl_wf_sqrt(dd * fl_wf_max(rest, fl_wf_set(0.0f)));
+    fl_wf q = fd + fl_wf_copysign(root, fd);
+    fl_wf t0 = (dot(f, f) - square) / q, t1 = q / dd;
+    fl_wf first = fl_wf_min(t0, t1), last = fl_wf_max(t0, t1);
+    fl_wf t = fl_wf_select(first > 0.0f, first, last);
+    t = fl_wf_select(meets, t, fl_wf_set(-1.0f));
+    return fl_wf_select(own, middle + middle, t);
+}
+
+FL_INLINE fl_wf hit_patch(const fl_patches *p, uint32_t k, const bundle *b, fl_wm own)
+{
+    fl_wf n[3] = {fl_wf_set(p->nx[k]), fl_wf_set(p->ny[k]), fl_wf_set(p->nz[k])};
+    fl_wf f[3] = {b->o[0] - p->cx[k], b->o[1] - p->cy[k], b->o[2] - p->cz[k]};
+    fl_wf t = -dot(n, f) / dot(n, b->d);
+    for (int a = 0; a < 3; a++)
+        f[a] = f[a] + t * b->d[a];
+    fl_wf u[3] = {fl_wf_set(p->ax[k]), fl_wf_set(p->ay[k]), fl_wf_set(p->az[k])};
+    fl_wf v[3] = {fl_wf_set(p->bx[k]), fl_wf_set(p->by[k]), fl_wf_set(p->bz[k])};
+    fl_wf alpha = dot(u, f), beta = dot(v, f);
+    fl_wm inside;
+    if (p->is_disk[k])
+        inside = alpha * alpha + beta * beta <= 1.0f;
+    else
+        inside = (alpha >= 0.0f) & (alpha <= 1.0f) & (beta >= 0.0f) & (beta <= 1.0f);
+    return fl_wf_select(inside & ~own, t, fl_wf_set(-1.0f));
+}
+
+/* The bound in double below which a root rounds to a float below t_max: where any-hit must agree
+ * with nearest. */
+static double below_float(float t_max)
+{
+    if (!(t_max < INFINITY))
+        return HUGE_VAL;
+    uint32_t bits;
+    float previous;
+    memcpy(&bits, &t_max, sizeof bits);
+    bits--;
+    memcpy(&previous, &bits, sizeof bits);
+    double middle = 0.5 * ((double)previous + (double)t_max);
+    return bits & 1u ? middle : middle * (1.0 + 0x1p-52); /* A tie goes to the even float. */
+}
+
+static fl_wf hit_revolution(const job *j, const fl_revolutions *r, uint32_t k, const bundle *b,
+                            const fl_vec3 *shift, fl_wf best, const bool is_any)
+{
+    fl_wf t = fl_wf_set(-1.0f), near;
+    slabs s = slabs_of(b, FL_ORIGIN_PAD);
+    fl_wm meets = slabs_meet(&s, r->bounds[k].lo, r->bounds[k].hi, best, &near);
+    uint32_t lanes = fl_wm_bits(meets & (best > 0.0f));
+    if (!lanes)
+        return t;
+    fl_revolve_packet rays;
+    for (int i = 0; i < FL_W; i++) {
+        rays.ox[i] = (double)b->o[0][i] + shift->x;
+        rays.oy[i] = (double)b->o[1][i] + shift->y;
+        rays.oz[i] = (double)b->o[2][i] + shift->z;
+        rays.dx[i] = (double)b->d[0][i];
+        rays.dy[i] = (double)b->d[1][i];
+        rays.dz[i] = (double)b->d[2][i];
+        rays.u_min[i] = 0.0;
+        rays.u_max[i] = is_any ? below_float(best[i]) : (double)best[i] * (1.0 + 0x1p-22);
+    }
+    fl_revolve_solver solver = j->context->solver;
+    fl_revolve_hit hits[FL_REVOLVE_PACKET];
+    j->context->counts.primitive_tests += (uint64_t)__builtin_popcount(lanes);
+    lanes = is_any ? fl_revolve_any8(r->profile[k], &rays, lanes, solver)
+                   : fl_revolve_nearest8(r->profile[k], &rays, lanes, solver, hits);
+    for (; lanes; lanes &= lanes - 1) {
+        int i = __builtin_ctz(lanes);
+        t[i] = is_any ? 0x1p-126f : (float)hits[i].u; /* Where something blocks does not matter. */
+    }
+    return t;
+}
+
+#endif
