@@ -33,10 +33,7 @@ uint32_t fl_sobol_raw(uint32_t k, uint32_t dimension)
 fl_sample_pass fl_sample_pass_begin(fl_sampler kind, uint32_t seed, uint32_t set, uint32_t index)
 {
     fl_sample_pass pass = {.kind = kind, .seed = seed, .set = set, .index = index};
-    if (kind == FL_SAMPLER_SOBOL) {
-        uint32_t k = fl_owen(index, fl_hash_step(seed, set));
-        for (uint32_t d = 0; d < FL_SAMPLE_DIMENSIONS; d++)
-            pass.raw_reversed[d] = fl_reverse_bits(fl_sobol_raw(k, d));
-    }
+    for (uint32_t d = 0; kind != FL_SAMPLER_RANDOM && d < FL_SAMPLE_DIMENSIONS; d++)
+        pass.raw_reversed[d] = fl_reverse_bits(fl_sample_raw(kind, seed, index, set, d));
     return pass;
 }

@@ -8,6 +8,7 @@
  * raw points; each pixel scrambles them with a seed of its own. Dimensions 0 and 1 form a
  * (0,2)-sequence and are the best pair: hand out dimensions only to features in use.
  * `random`: an independent hash for every number; the slow baseline to compare with.
+ * `padded`: the first two Sobol dimensions only, the lens a set of its own; to compare with, too.
  *
  *     pixel   y << 16 | x, absolute in the whole picture also when only a crop is rendered
  *     set     FL_SET_CAMERA: pixel filter and lens, up to four dimensions, index i (sample number);
@@ -23,7 +24,11 @@
 
 #include "core/base.h"
 
-typedef enum fl_sampler { FL_SAMPLER_SOBOL, FL_SAMPLER_RANDOM } fl_sampler;
+typedef enum fl_sampler {
+    FL_SAMPLER_SOBOL,
+    FL_SAMPLER_RANDOM,
+    FL_SAMPLER_PADDED /**< Sobol in pairs: dimensions 2, 3 are those of a set of their own. */
+} fl_sampler;
 
 #define FL_SET_CAMERA  0u /* the set of the pixel filter and the lens */
 #define FL_PATH_CAMERA 1u /* path number of a camera ray */
@@ -86,6 +91,16 @@ static inline uint32_t fl_sobol_pascal(uint32_t v)
 /** Coordinate `dimension` (0 to 3) of Sobol point `k`, as a binary fraction of 32 bits. */
 uint32_t fl_sobol_raw(uint32_t k, uint32_t dimension);
 
+/** What all pixels share of number `dimension` of point `index`, before scrambling. */
+static inline uint32_t fl_sample_raw(fl_sampler kind, uint32_t seed, uint32_t index, uint32_t set,
+                                     uint32_t dimension)
+{
+    uint32_t shuffle = fl_hash_step(seed, set);
+    if (kind == FL_SAMPLER_PADDED && dimension >= 2)
+        return fl_sobol_raw(fl_owen(index, fl_hash_step(shuffle, 2)), dimension - 2);
+    return fl_sobol_raw(fl_owen(index, shuffle), dimension);
+}
+
 /** 24 bits as a float in [0, 1): the low 8 would round some numbers up to 1. */
 static inline float fl_unit_float(uint32_t bits)
 {
@@ -100,9 +115,8 @@ static inline float fl_sample_scalar(fl_sampler kind, uint32_t seed, uint32_t pi
         uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, 3), pixel), index);
         return fl_unit_float(fl_hash_step(fl_hash_step(h, set), dimension));
     }
-    uint32_t k = fl_owen(index, fl_hash_step(seed, set));
     uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, pixel), set), dimension);
-    return fl_unit_float(fl_owen(fl_sobol_raw(k, dimension), h));
+    return fl_unit_float(fl_owen(fl_sample_raw(kind, seed, index, set, dimension), h));
 }
 
 /** What all pixels share for one (set, index): made once a pass, read by wide_sampler.h. */

@@ -86,11 +86,12 @@ static void assert_boxes(float points[][4], uint32_t n, const uint32_t bits[4], 
         assert_int_equal(counts[box], 1u << t);
 }
 
-static void fill_points(float points[][4], uint32_t n, uint32_t pixel, uint32_t set)
+static void fill_points(float points[][4], fl_sampler kind, uint32_t n, uint32_t pixel,
+                        uint32_t set)
 {
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t d = 0; d < 4; d++)
-            points[i][d] = fl_sample_scalar(FL_SAMPLER_SOBOL, SEED, pixel, i, set, d);
+            points[i][d] = fl_sample_scalar(kind, SEED, pixel, i, set, d);
 }
 
 /* Dimensions 0, 1 are a (0, 2)-sequence: every prefix of 2^k points is a net. Each of the four is
@@ -102,7 +103,7 @@ static void test_strata(void **state)
     static float points[1 << 10][4];
     for (uint32_t pixel = 0; pixel < 12; pixel++) {
         uint32_t set = pixel % 2 ? fl_set_light(SEED, FL_PATH_CAMERA, pixel) : FL_SET_CAMERA;
-        fill_points(points, 1 << 10, fl_hash_step(SEED, pixel), set);
+        fill_points(points, FL_SAMPLER_SOBOL, 1 << 10, fl_hash_step(SEED, pixel), set);
         for (uint32_t k = 0; k <= 10; k++) {
             for (uint32_t i = 0; i <= k; i++)
                 assert_boxes(points, 1u << k, (const uint32_t[4]){i, k - i, 0, 0}, 0);
@@ -115,6 +116,26 @@ static void test_strata(void **state)
                                  3);
             }
         }
+    }
+}
+
+/* Both pairs are (0, 2)-sequences; the four together are not stratified: that is the difference. */
+static void test_padded_strata(void **state)
+{
+    (void)state;
+    static float points[1 << 10][4];
+    for (uint32_t pixel = 0; pixel < 12; pixel++) {
+        fill_points(points, FL_SAMPLER_PADDED, 1 << 10, fl_hash_step(SEED, pixel), FL_SET_CAMERA);
+        for (uint32_t k = 0; k <= 10; k++)
+            for (uint32_t i = 0; i <= k; i++) {
+                assert_boxes(points, 1u << k, (const uint32_t[4]){i, k - i, 0, 0}, 0);
+                assert_boxes(points, 1u << k, (const uint32_t[4]){0, 0, i, k - i}, 0);
+            }
+        for (uint32_t i = 0; i < 1 << 10; i++)
+            for (uint32_t d = 0; d < 2; d++)
+                assert_true(points[i][d] == fl_sample_scalar(FL_SAMPLER_SOBOL, SEED,
+                                                             fl_hash_step(SEED, pixel), i,
+                                                             FL_SET_CAMERA, d));
     }
 }
 
@@ -152,7 +173,7 @@ static void test_pixels_are_independent(void **state)
     (void)state;
     static double x[FIELD], y[FIELD];
     const double bound = 5.0 / SIDE;
-    for (int kind = FL_SAMPLER_SOBOL; kind <= FL_SAMPLER_RANDOM; kind++) {
+    for (int kind = FL_SAMPLER_SOBOL; kind <= FL_SAMPLER_PADDED; kind++) {
         for (uint32_t code = 0; code < 4 * 3; code++) {
             uint32_t d = code % 4, index = code / 4 * 5, light = fl_set_light(SEED, 1, 0);
             fill_field(x, (fl_sampler)kind, 0, 0, index, FL_SET_CAMERA, d);
@@ -220,9 +241,9 @@ static void test_wide_equals_scalar(void **state)
     fill_lanes();
     const fl_wide_table *table;
     for (int t = 0; (table = fl_wide_table_at(t)); t++) {
-        for (uint32_t code = 0; code < 2 * 24; code++) {
-            fl_sampler kind = code % 2 ? FL_SAMPLER_RANDOM : FL_SAMPLER_SOBOL;
-            uint32_t step = code / 2, seed = step % 5;
+        for (uint32_t code = 0; code < 3 * 24; code++) {
+            fl_sampler kind = (fl_sampler)(code % 3);
+            uint32_t step = code / 3, seed = step % 5;
             uint32_t set = step % 3 ? fl_set_light(seed, FL_PATH_CAMERA, step) : FL_SET_CAMERA;
             uint32_t index = step < 12 ? step : fl_hash_step(SEED, step);
             fl_sample_pass pass = fl_sample_pass_begin(kind, seed, set, index);
@@ -232,9 +253,9 @@ static void test_wide_equals_scalar(void **state)
                     want[d * N + i] = fl_sample_scalar(kind, seed, pixels[i], index, set, d);
             assert_memory_equal(got, want, sizeof want);
         }
-        for (uint32_t code = 0; code < 2 * 8; code++) {
-            fl_sampler kind = code % 2 ? FL_SAMPLER_RANDOM : FL_SAMPLER_SOBOL;
-            uint32_t light = code / 2, seed = fl_hash_step(SEED, light);
+        for (uint32_t code = 0; code < 3 * 8; code++) {
+            fl_sampler kind = (fl_sampler)(code % 3);
+            uint32_t light = code / 3, seed = fl_hash_step(SEED, light);
             table->sample_pair(got, kind, seed, pixels, indices, paths, light, N);
             for (size_t i = 0; i < N; i++) {
                 uint32_t set = fl_set_light(seed, paths[i], light);
@@ -419,6 +440,7 @@ int main(void)
         cmocka_unit_test(test_sobol_equals_direction_matrices),
         cmocka_unit_test(test_reversal_and_nesting),
         cmocka_unit_test(test_strata),
+        cmocka_unit_test(test_padded_strata),
         cmocka_unit_test(test_pixels_are_independent),
         cmocka_unit_test(test_errors_are_small_and_independent),
         cmocka_unit_test(test_wide_equals_scalar),

@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/kernel_shade.h"
+
+#include <math.h>
+
+#include "core/kernel_camera.h"
+
+/* Shadow rays end this much, relatively, before the point on the light: far above the rounding of
+ * t, so that a surface on which the light lies does not hide it. */
+#define SHADOW_END (1.0f - 0x1p-20f)
+
+typedef struct wide3 {
+    fl_wf x, y, z;
+} wide3;
+
+FL_INLINE wide3 load3(fl_array3 a, uint32_t at)
+{
+    return (wide3){fl_wf_load(a.x + at), fl_wf_load(a.y + at), fl_wf_load(a.z + at)};
+}
+
+FL_INLINE void store3(fl_array3 a, uint32_t at, wide3 v)
+{
+    fl_wf_store(a.x + at, v.x);
+    fl_wf_store(a.y + at, v.y);
+    fl_wf_store(a.z + at, v.z);
+}
+
+FL_INLINE wide3 set3(const float v[3])
+{
+    return (wide3){fl_wf_set(v[0]), fl_wf_set(v[1]), fl_wf_set(v[2])};
+}
+
+FL_INLINE fl_wf dot3(wide3 a, wide3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/* a + s b */
+FL_INLINE wide3 mad3(wide3 a, wide3 b, fl_wf s)
+{
+    return (wide3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
+}
+
+FL_INLINE wide3 scale3(wide3 a, fl_wf s)
+{
+    return (wide3){a.x * s, a.y * s, a.z * s};
+}
+
+FL_INLINE wide3 load_point(const fl_stage *stage, uint32_t at)
+{
+    const fl_surface *s = &stage->surface;
+    return (wide3){fl_wf_load(s->px + at), fl_wf_load(s->py + at), fl_wf_load(s->pz + at)};
+}
+
+FL_INLINE wide3 load_geometric(const fl_stage *stage, uint32_t at)
+{
+    const fl_surface *s = &stage->surface;
+    return (wide3){fl_wf_load(s->ngx + at), fl_wf_load(s->ngy + at), fl_wf_load(s->ngz + at)};
+}
+
+/* Where a ray towards `direction` leaves the surface: outside its error bound, on the side it goes
+ * to. */
+FL_INLINE wide3 leave(const fl_stage *stage, uint32_t at, wide3 point, wide3 geometric,
+                      wide3 direction)
+{
+    fl_wf side = dot3(geometric, direction);
+    return mad3(point, geometric, fl_wf_copysign(fl_wf_load(stage->surface.offset + at), side));
+}
+
+static void generate(const fl_frame *frame, const fl_unit *unit, uint32_t begin, uint32_t count,
+                     fl_stage *out_stage)
+{
+    fl_camera_generate(frame, unit, begin, count, out_stage);
+}
+
+static void orient(const fl_frame *frame, fl_stage *stage)
+{
+    const fl_rays *rays = &stage->rays;
+    const fl_surface *s = &stage->surface;
+    for (uint32_t i = 0; i < rays->count; i += FL_W) {
+        wide3 d = {fl_wf_load(rays->dx + i), fl_wf_load(rays->dy + i), fl_wf_load(rays->dz + i)};
+        wide3 n = {fl_wf_load(s->nsx + i), fl_wf_load(s->nsy + i), fl_wf_load(s->nsz + i)};
+        wide3 view = scale3(d, -1.0f / fl_wf_sqrt(dot3(d, d)));
+        fl_wm is_behind = dot3(load_geometric(stage, i), view) < 0.0f;
+        if (frame->params.exact.no_normal_flip)
+            is_behind = fl_wi_set(0);
+        fl_wm flip = is_behind & INT32_MIN;
+        n = (wide3){(fl_wf)((fl_wi)n.x ^ flip), (fl_wf)((fl_wi)n.y ^ flip),
+                    (fl_wf)((fl_wi)n.z ^ flip)};
+        store3(stage->normal, i, n);
+        store3(stage->view, i, view);
+    }
+}
+
+/* A point of the light for each of the lanes at `at`. */
+FL_INLINE wide3 light_point(const fl_frame *frame, const fl_frame_light *light,
+                            const fl_sample_pass *pass, const fl_stage *stage, uint32_t at)
+{
+    if (!light->draws)
+        return set3(light->position);
+    fl_wf u, v, point[3];
+    fl_wu pixel = fl_wu_load(stage->pixel + at);
+    if (stage->is_camera) {
+        fl_wu key = fl_wu_sample_key(pass, pixel);
+        u = fl_wf_sample(pass, key, 0);
+        v = fl_wf_sample(pass, key, 1);
+    } else {
+        fl_wu set = fl_wu_set_light(frame->params.seed, fl_wu_load(stage->path + at), light->index);
+        fl_wf_sample_pair(pass->kind, pass->seed, pixel, fl_wu_set(pass->index), set, &u, &v);
+    }
+    fl_wf_warp_disk_light(light->position, light->axis_u, light->axis_v, u, v, point);
+    return (wide3){point[0], point[1], point[2]};
+}
+
+/* Phong: diffuse max(0, N.L) + specular max(0, R.L)^shininess, with R the mirrored view. */
+FL_INLINE wide3 reflectance(const fl_frame *frame, const fl_stage *stage, uint32_t at,
+                            wide3 geometric, wide3 to_light)
+{
+    wide3 view = load3(stage->view, at), normal = load3(stage->normal, at);
+    fl_wf zero = fl_wf_set(0.0f), n_l = dot3(normal, to_light);
+    wide3 sum = scale3(load3(stage->diffuse, at), fl_wf_max(n_l, zero));
+    if (!frame->plan.has_specular)
+        return sum;
+    wide3 specular = load3(stage->specular, at);
+    fl_wm shines = (specular.x != 0.0f) | (specular.y != 0.0f) | (specular.z != 0.0f);
+    if (!frame->params.exact.ungated_specular) {
+        fl_wm is_behind = dot3(geometric, view) < 0.0f;
+        fl_wf g_l = dot3(geometric, to_light);
+        shines &= (n_l > 0.0f) & (fl_wf_select(is_behind, -g_l, g_l) > 0.0f);
+    }
+    if (!fl_wm_any(shines))
+        return sum;
+    fl_wf r_l = 2.0f * dot3(normal, view) * n_l - dot3(view, to_light);
+    r_l = fl_wf_min(fl_wf_max(r_l, zero), fl_wf_set(1.0f));
+    fl_wf lobe = fl_wf_pow(r_l, fl_wf_load(stage->shininess + at));
+    return mad3(sum, specular, fl_wf_select(shines, lobe, zero));
+}
+
+/* Lanes that carry something, packed behind those already in the stream. */
+FL_INLINE void shadow_append(fl_shadow *out, fl_wm live, uint32_t at, wide3 arrives)
+{
+    uint32_t n = out->rays.count, order = fl_wm_order(live);
+    fl_wu_store_packed(out->at + n, (fl_wu)fl_wi_iota() + at, order);
+    fl_wf_store_packed(out->arrives.x + n, arrives.x, order);
+    fl_wf_store_packed(out->arrives.y + n, arrives.y, order);
+    fl_wf_store_packed(out->arrives.z + n, arrives.z, order);
+}
+
+FL_INLINE void shadow_append_rays(fl_shadow *out, fl_wm live, const fl_hits *hits, uint32_t at,
+                                  wide3 origin, wide3 direction, float t_max)
+{
+    uint32_t n = out->rays.count, order = fl_wm_order(live);
+    fl_wf_store_packed(out->rays.ox + n, origin.x, order);
+    fl_wf_store_packed(out->rays.oy + n, origin.y, order);
+    fl_wf_store_packed(out->rays.oz + n, origin.z, order);
+    fl_wf_store_packed(out->rays.dx + n, direction.x, order);
+    fl_wf_store_packed(out->rays.dy + n, direction.y, order);
+    fl_wf_store_packed(out->rays.dz + n, direction.z, order);
+    fl_wf_store(out->rays.t_max + n, fl_wf_set(t_max));
+    fl_wu_store_packed(out->rays.source_object + n, fl_wu_load(hits->object + at), order);
+    fl_wu_store_packed(out->rays.source_prim + n, fl_wu_load(hits->prim + at), order);
+}
+
+static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sample, uint32_t j,
+                  const fl_stage *stage, fl_shadow *out)
+{
+    uint32_t count = stage->rays.count, index = sample * from->samples + j;
+    bool is_far = from->kind == FL_LIGHT_DIRECTIONAL;
+    uint32_t camera_set = fl_set_light(frame->params.seed, FL_PATH_CAMERA, from->index);
+    fl_sample_pass pass =
+        fl_sample_pass_begin(frame->params.sampler, frame->params.seed, camera_set, index);
+    out->rays.count = 0;
+    for (uint32_t i = 0; i < count; i += FL_W) {
+        fl_wm live = fl_wm_first(count - i);
+        wide3 point = load_point(stage, i), geometric = load_geometric(stage, i);
+        wide3 color = set3(from->color), target = {0}, to_light = set3(from->to_light);
+        if (!is_far) {
+            target = light_point(frame, from, &pass, stage, i);
+            wide3 way = mad3(target, point, fl_wf_set(-1.0f));
+            fl_wf square = dot3(way, way), distance = fl_wf_sqrt(square);
+            live &= square > 0.0f;
+            if (!from->is_two_sided)
+                live &= dot3(way, set3(from->normal)) < 0.0f;
+            to_light = scale3(way, 1.0f / distance);
+            if (from->has_attenuation) {
+                const float *a = from->attenuation;
+                color = scale3(color, 1.0f / (a[0] + a[1] * distance + a[2] * square));
+            }
+        }
+        wide3 part = reflectance(frame, stage, i, geometric, to_light);
+        wide3 arrives = {color.x * part.x, color.y * part.y, color.z * part.z};
+        live &= (arrives.x != 0.0f) | (arrives.y != 0.0f) | (arrives.z != 0.0f);
+        if (!fl_wm_any(live))
+            continue;
+        shadow_append(out, live, i, arrives);
+        if (frame->plan.has_shadows) {
+            wide3 origin = leave(stage, i, point, geometric, to_light);
+            wide3 direction = is_far ? to_light : mad3(target, origin, fl_wf_set(-1.0f));
+            shadow_append_rays(out, live, &stage->hits, i, origin, direction,
+                               is_far ? INFINITY : SHADOW_END);
+        }
+        out->rays.count += fl_wm_count(live);
+    }
+}
+
+static void bend(const fl_frame *frame, fl_stage *stage)
+{
+    fl_wf one = fl_wf_set(1.0f), zero = fl_wf_set(0.0f);
+    for (uint32_t i = 0; i < stage->rays.count; i += FL_W) {
+        fl_wf index = fl_wf_load(stage->index + i);
+        if (!fl_wm_any((index != 0.0f) & fl_wm_first(stage->rays.count - i)))
+            continue;
+        wide3 point = load_point(stage, i), geometric = load_geometric(stage, i);
+        wide3 normal = load3(stage->normal, i), view = load3(stage->view, i);
+        fl_wf n_v = fl_wf_max(fl_wf_min(dot3(normal, view), one), -one);
+        wide3 mirrored = mad3(scale3(normal, 2.0f * n_v), view, -one);
+        store3(stage->reflect, i, mirrored);
+        store3(stage->reflect_origin, i, leave(stage, i, point, geometric, mirrored));
+        fl_wu_store(stage->is_total + i, fl_wu_set(0));
+        if (!frame->plan.has_refraction)
+            continue;
+        /* The part along the surface scales by the ratio of the indices; what is left of 1 goes
+         * across. */
+        fl_wm enters = dot3(geometric, view) >= 0.0f;
+        fl_wf ratio = fl_wf_select(enters, 1.0f / index, index);
+        wide3 along = scale3(mad3(scale3(normal, n_v), view, -one), ratio);
+        fl_wf across = 1.0f - dot3(along, along);
+        fl_wm passes = across > 0.0f;
+        wide3 bent = mad3(along, normal, -fl_wf_sqrt(fl_wf_max(across, zero)));
+        store3(stage->refract, i, bent);
+        store3(stage->refract_origin, i, leave(stage, i, point, geometric, bent));
+        fl_wu_store(stage->is_total + i, (fl_wu)~passes);
+    }
+}
+
+const fl_shade_kernels FL_ISA_NAME(fl_shade_kernels) = {generate, orient, light, bend};

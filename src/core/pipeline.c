@@ -1,0 +1,430 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/pipeline.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "core/pipeline_work.h"
+#include "core/texture.h"
+
+void fl_counts_add(fl_counts *sum, const fl_counts *part)
+{
+    sum->samples += part->samples;
+    sum->invalid_samples += part->invalid_samples;
+    sum->camera_rays += part->camera_rays;
+    sum->shadow_rays += part->shadow_rays;
+    sum->reflect_rays += part->reflect_rays;
+    sum->refract_rays += part->refract_rays;
+    sum->dropped_branches += part->dropped_branches;
+    sum->sample_dimensions += part->sample_dimensions;
+    sum->texture_lookups += part->texture_lookups;
+    sum->isect.node_visits += part->isect.node_visits;
+    sum->isect.primitive_tests += part->isect.primitive_tests;
+}
+
+static void put3(fl_array3 a, uint32_t i, const float v[3])
+{
+    a.x[i] = v[0];
+    a.y[i] = v[1];
+    a.z[i] = v[2];
+}
+
+static void clear3(fl_array3 a, uint32_t count)
+{
+    memset(a.x, 0, count * sizeof(float));
+    memset(a.y, 0, count * sizeof(float));
+    memset(a.z, 0, count * sizeof(float));
+}
+
+static void copy_ray(fl_stage *stage, uint32_t to, uint32_t from)
+{
+    fl_rays *r = &stage->rays;
+    r->ox[to] = r->ox[from];
+    r->oy[to] = r->oy[from];
+    r->oz[to] = r->oz[from];
+    r->dx[to] = r->dx[from];
+    r->dy[to] = r->dy[from];
+    r->dz[to] = r->dz[from];
+    r->t_max[to] = r->t_max[from];
+    r->source_object[to] = r->source_object[from];
+    r->source_prim[to] = r->source_prim[from];
+    stage->hits.t[to] = stage->hits.t[from];
+    stage->hits.object[to] = stage->hits.object[from];
+    stage->hits.prim[to] = stage->hits.prim[from];
+    stage->pixel[to] = stage->pixel[from];
+    stage->path[to] = stage->path[from];
+}
+
+/* Rays that hit nothing see the background and leave the stream. */
+static void take_misses(fl_pipe *pipe)
+{
+    fl_stage *stage = &pipe->work->stage;
+    const fl_frame *frame = pipe->frame;
+    const fl_vec3 color = frame->params.background;
+    const float background[3] = {(float)color.x, (float)color.y, (float)color.z};
+    bool has_cube = frame->scene->cube[0] != NULL;
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < stage->rays.count; i++) {
+        if (stage->hits.object[i] != FL_NONE) {
+            if (kept != i)
+                copy_ray(stage, kept, i);
+            stage->entry[kept++] = i;
+        } else if (has_cube) {
+            float d[3] = {stage->rays.dx[i], stage->rays.dy[i], stage->rays.dz[i]}, rgb[3];
+            fl_cube_eval(frame->scene->cube, d, frame->params.exact.course_cube, rgb);
+            put3(pipe->work->glow, i, rgb);
+        } else {
+            put3(pipe->work->glow, i, background);
+        }
+    }
+    stage->rays.count = kept;
+    fl_rays_pad(&stage->rays);
+    fl_hits_pad(&stage->hits, kept);
+}
+
+static bool is_black(const float c[3])
+{
+    return c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f;
+}
+
+/* Index of refraction with which ray i goes on, or 0. */
+static float branch_index(const fl_shader *shader)
+{
+    if (is_black(shader->reflect) && is_black(shader->refract))
+        return 0.0f;
+    return shader->refraction_index > 0.0f ? shader->refraction_index : 1.0f;
+}
+
+static bool is_seen_from_behind(const fl_stage *stage, uint32_t i)
+{
+    const fl_surface *s = &stage->surface;
+    return s->ngx[i] * stage->rays.dx[i] + s->ngy[i] * stage->rays.dy[i] + s->ngz[i] * stage->rays.dz[i] > 0.0f;
+}
+
+/* What the surfaces are made of, and the ambient light on them. True: some of them spawn rays. */
+static bool fetch_materials(fl_pipe *pipe)
+{
+    fl_stage *stage = &pipe->work->stage;
+    const fl_frame_plan *plan = &pipe->frame->plan;
+    const fl_compiled *scene = pipe->frame->scene;
+    const fl_vec3 ambient = pipe->frame->params.ambient;
+    const float light[3] = {(float)ambient.x, (float)ambient.y, (float)ambient.z};
+    bool has_branches = false;
+    for (uint32_t i = 0; i < stage->rays.count; i++) {
+        uint32_t number = scene->object_shader[stage->hits.object[i]];
+        const fl_shader *shader = &scene->shaders[number];
+        float diffuse[3] = {shader->diffuse[0], shader->diffuse[1], shader->diffuse[2]}, texel[3],
+              glow[3];
+        if (plan->has_textures && shader->texture != FL_NONE) {
+            fl_texture_eval(&scene->textures[shader->texture], stage->surface.u[i],
+                            stage->surface.v[i], texel);
+            for (int c = 0; c < 3; c++)
+                diffuse[c] *= texel[c];
+            pipe->counts.texture_lookups++;
+        }
+        const float *reflectance = shader->ambient_is_diffuse ? diffuse : shader->ambient;
+        for (int c = 0; c < 3; c++)
+            glow[c] = reflectance[c] * light[c];
+        const float *specular = shader->specular;
+        if (pipe->frame->params.exact.black_back_faces && is_seen_from_behind(stage, i)) {
+            static const float black[3] = {0.0f, 0.0f, 0.0f};
+            memset(diffuse, 0, sizeof diffuse);
+            memset(glow, 0, sizeof glow);
+            specular = black;
+        }
+        put3(stage->diffuse, i, diffuse);
+        put3(stage->radiance, i, glow);
+        stage->shader[i] = number;
+        if (plan->has_specular) {
+            put3(stage->specular, i, specular);
+            stage->shininess[i] = shader->shininess;
+        }
+        if (plan->has_reflection || plan->has_refraction) {
+            stage->index[i] = branch_index(shader);
+            has_branches |= stage->index[i] != 0.0f;
+        }
+    }
+    return has_branches;
+}
+
+static void add_arrivals(const fl_shadow *shadow, fl_array3 sum)
+{
+    for (uint32_t i = 0; i < shadow->rays.count; i++) {
+        uint32_t at = shadow->at[i];
+        sum.x[at] += shadow->arrives.x[i];
+        sum.y[at] += shadow->arrives.y[i];
+        sum.z[at] += shadow->arrives.z[i];
+    }
+}
+
+static void add_mean(fl_array3 sum, fl_array3 part, float samples, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        sum.x[i] += part.x[i] / samples;
+        sum.y[i] += part.y[i] / samples;
+        sum.z[i] += part.z[i] / samples;
+    }
+}
+
+/* Lights in scene order; each sends the mean of its samples. False: cancelled. */
+static bool add_lights(fl_pipe *pipe)
+{
+    fl_workspace *work = pipe->work;
+    fl_stage *stage = &work->stage;
+    const fl_frame *frame = pipe->frame;
+    uint32_t count = stage->rays.count;
+    for (uint32_t l = 0; l < frame->light_count; l++) {
+        const fl_frame_light *light = &frame->lights[l];
+        fl_array3 sum = light->samples > 1 ? work->lit : stage->radiance;
+        if (light->samples > 1)
+            clear3(work->lit, count);
+        for (uint32_t j = 0; j < light->samples; j++) {
+            pipe->shade->light(frame, light, pipe->unit->sample, j, stage, &work->shadow);
+            if (fl_is_cancelled(&pipe->context))
+                return false;
+            pipe->counts.sample_dimensions += light->draws ? 2u * (uint64_t)count : 0;
+            if (frame->plan.has_shadows && work->shadow.rays.count > 0) {
+                pipe->counts.shadow_rays += work->shadow.rays.count;
+                if (!fl_pipe_occlude(pipe))
+                    return false;
+            }
+            add_arrivals(&work->shadow, sum);
+        }
+        if (light->samples > 1)
+            add_mean(stage->radiance, work->lit, (float)light->samples, count);
+    }
+    return true;
+}
+
+/* A branch of ray i of the stage, unless it weighs too little. */
+static void spawn(fl_pipe *pipe, uint32_t i, const float weight[3], bool is_refracted)
+{
+    fl_workspace *work = pipe->work;
+    const fl_stage *stage = &work->stage;
+    const fl_params *params = &pipe->frame->params;
+    uint32_t entry = stage->entry[i];
+    fl_array3 o = is_refracted ? stage->refract_origin : stage->reflect_origin;
+    fl_array3 d = is_refracted ? stage->refract : stage->reflect;
+    fl_array3 t = work->throughput;
+    fl_branch *branch = &work->next.items[work->next.count];
+    *branch = (fl_branch){
+        .origin = {o.x[i], o.y[i], o.z[i]},
+        .direction = {d.x[i], d.y[i], d.z[i]},
+        .throughput = {t.x[entry] * weight[0], t.y[entry] * weight[1], t.z[entry] * weight[2]},
+        .source_object = stage->hits.object[i],
+        .source_prim = stage->hits.prim[i],
+        .path = fl_path_child(params->seed, stage->path[i], is_refracted ? 1 : 0),
+        .slot = work->slot[entry],
+        .is_refracted = is_refracted,
+    };
+    const float *c = branch->throughput;
+    float rg = c[0] > c[1] ? c[0] : c[1], largest = rg > c[2] ? rg : c[2];
+    float threshold = (float)params->weight_threshold;
+    if (!is_black(c) && !(threshold > 0.0f && largest < threshold))
+        work->next.count++;
+}
+
+static void spawn_all(fl_pipe *pipe)
+{
+    const fl_stage *stage = &pipe->work->stage;
+    pipe->shade->bend(pipe->frame, &pipe->work->stage);
+    for (uint32_t i = 0; i < stage->rays.count; i++) {
+        if (stage->index[i] == 0.0f)
+            continue;
+        const fl_shader *shader = &pipe->frame->scene->shaders[stage->shader[i]];
+        const float *k = shader->reflect, *m = shader->refract;
+        float both[3] = {k[0] + m[0], k[1] + m[1], k[2] + m[2]};
+        spawn(pipe, i, stage->is_total[i] ? both : k, false);
+        if (!stage->is_total[i])
+            spawn(pipe, i, m, true);
+    }
+}
+
+/* Radiance of the whole stream, weighted, to the unit's samples, in order of the stream. */
+static void accumulate(fl_pipe *pipe, uint32_t count)
+{
+    fl_workspace *work = pipe->work;
+    fl_stage *stage = &work->stage;
+    fl_unit_result *result = &work->result;
+    for (uint32_t i = 0; i < stage->rays.count; i++) {
+        const float rgb[3] = {stage->radiance.x[i], stage->radiance.y[i], stage->radiance.z[i]};
+        put3(work->glow, stage->entry[i], rgb);
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        uint32_t slot = work->slot[i];
+        result->r[slot] += work->throughput.x[i] * work->glow.x[i];
+        result->g[slot] += work->throughput.y[i] * work->glow.y[i];
+        result->b[slot] += work->throughput.z[i] * work->glow.z[i];
+    }
+}
+
+/* Everything for the rays now in the stage. False: cancelled. */
+static bool run_stream(fl_pipe *pipe, bool may_spawn)
+{
+    fl_workspace *work = pipe->work;
+    fl_stage *stage = &work->stage;
+    const fl_compiled *scene = pipe->frame->scene;
+    uint32_t count = stage->rays.count;
+    fl_rays_pad(&stage->rays);
+    pipe->isect->nearest(&scene->geometry, &stage->rays, &stage->hits, &pipe->context);
+    if (fl_is_cancelled(&pipe->context))
+        return false;
+    take_misses(pipe);
+    if (stage->rays.count > 0) {
+        const uint8_t *needs_uv = pipe->frame->plan.has_textures ? scene->object_needs_uv : NULL;
+        pipe->isect->resolve(&scene->geometry, &stage->rays, &stage->hits, needs_uv,
+                             &stage->surface, &pipe->context);
+        if (fl_is_cancelled(&pipe->context))
+            return false;
+        bool has_branches = fetch_materials(pipe);
+        pipe->shade->orient(pipe->frame, stage);
+        if (fl_is_cancelled(&pipe->context) || !add_lights(pipe))
+            return false;
+        if (has_branches && may_spawn)
+            spawn_all(pipe);
+    }
+    accumulate(pipe, count);
+    return !fl_is_cancelled(&pipe->context);
+}
+
+static void load_branches(fl_pipe *pipe, uint32_t begin, uint32_t count)
+{
+    fl_workspace *work = pipe->work;
+    fl_stage *stage = &work->stage;
+    fl_rays *rays = &stage->rays;
+    for (uint32_t i = 0; i < count; i++) {
+        const fl_branch *b = &work->current.items[begin + i];
+        put3((fl_array3){rays->ox, rays->oy, rays->oz}, i, b->origin);
+        put3((fl_array3){rays->dx, rays->dy, rays->dz}, i, b->direction);
+        put3(work->throughput, i, b->throughput);
+        rays->t_max[i] = INFINITY;
+        rays->source_object[i] = b->source_object;
+        rays->source_prim[i] = b->source_prim;
+        stage->path[i] = b->path;
+        stage->pixel[i] = fl_pixel_id(pipe->unit->x[b->slot], pipe->unit->y[b->slot]);
+        work->slot[i] = b->slot;
+        if (b->is_refracted)
+            pipe->counts.refract_rays++;
+        else
+            pipe->counts.reflect_rays++;
+    }
+    rays->count = count;
+    stage->is_camera = false;
+}
+
+static void load_camera(fl_pipe *pipe, uint32_t begin, uint32_t count)
+{
+    static const float one[3] = {1.0f, 1.0f, 1.0f};
+    fl_workspace *work = pipe->work;
+    pipe->shade->generate(pipe->frame, pipe->unit, begin, count, &work->stage);
+    for (uint32_t i = 0; i < count; i++) {
+        put3(work->throughput, i, one);
+        work->slot[i] = begin + i;
+    }
+    pipe->counts.camera_rays += count;
+    pipe->counts.sample_dimensions += (uint64_t)count * pipe->frame->plan.dimensions;
+}
+
+/* All rays of one level, in pieces. False: cancelled or out of memory. */
+static bool run_level(fl_pipe *pipe, uint32_t level, bool *out_of_memory)
+{
+    fl_workspace *work = pipe->work;
+    const fl_frame_plan *plan = &pipe->frame->plan;
+    uint32_t count = level == 0 ? pipe->unit->count : work->current.count;
+    bool may_spawn =
+        (plan->has_reflection || plan->has_refraction) && level < pipe->frame->params.depth_limit;
+    for (uint32_t begin = 0; begin < count; begin += FL_STREAM_RAYS) {
+        uint32_t part = fl_min_u32(count - begin, FL_STREAM_RAYS);
+        /* Room for both branches of every ray, and one that is written before it is weighed. */
+        if (may_spawn && !fl_branches_reserve(&work->next, 2 * part + 1)) {
+            *out_of_memory = true;
+            return false;
+        }
+        if (level == 0)
+            load_camera(pipe, begin, part);
+        else
+            load_branches(pipe, begin, part);
+        if (!run_stream(pipe, may_spawn))
+            return false;
+    }
+    return true;
+}
+
+/* NaN and infinities stay out of the film (design rule 6). */
+static void check_samples(fl_pipe *pipe)
+{
+    fl_unit_result *result = &pipe->work->result;
+    for (uint32_t i = 0; i < pipe->unit->count; i++) {
+        bool is_valid = isfinite(result->r[i]) && isfinite(result->g[i]) && isfinite(result->b[i]);
+        result->is_valid[i] = is_valid;
+        if (!is_valid) {
+            result->r[i] = result->g[i] = result->b[i] = 0.0f;
+            pipe->counts.invalid_samples++;
+        }
+    }
+    pipe->counts.samples += pipe->unit->count;
+}
+
+static const fl_isect_kernels *isect_kernels(fl_isa isa)
+{
+#if defined(__x86_64__)
+    if (isa == FL_ISA_AVX2)
+        return &fl_isect_kernels_avx2;
+    if (isa == FL_ISA_SSE2)
+        return &fl_isect_kernels_sse2;
+#elif defined(__aarch64__)
+    if (isa == FL_ISA_NEON)
+        return &fl_isect_kernels_neon;
+#endif
+    FL_ASSERT(isa == FL_ISA_SCALAR);
+    return &fl_isect_kernels_scalar;
+}
+
+static const fl_shade_kernels *shade_kernels(fl_isa isa)
+{
+#if defined(__x86_64__)
+    if (isa == FL_ISA_AVX2)
+        return &fl_shade_kernels_avx2;
+    if (isa == FL_ISA_SSE2)
+        return &fl_shade_kernels_sse2;
+#elif defined(__aarch64__)
+    if (isa == FL_ISA_NEON)
+        return &fl_shade_kernels_neon;
+#endif
+    FL_ASSERT(isa == FL_ISA_SCALAR);
+    return &fl_shade_kernels_scalar;
+}
+
+bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *workspace,
+                     const atomic_uint_least64_t *generation, uint64_t wanted, fl_counts *counts,
+                     bool *out_of_memory)
+{
+    FL_ASSERT(unit->count <= FL_UNIT_PIXELS);
+    fl_pipe pipe = {
+        .frame = frame,
+        .unit = unit,
+        .work = workspace,
+        .isect = isect_kernels(frame->scene->isa),
+        .shade = shade_kernels(frame->scene->isa),
+        .context = {.solver = frame->params.solver, .generation = generation, .wanted = wanted},
+    };
+    fl_unit_result *result = &workspace->result;
+    *out_of_memory = frame->params.transparent_shadows && !fl_workspace_reserve_through(workspace);
+    if (*out_of_memory || fl_is_cancelled(&pipe.context))
+        return false;
+    clear3((fl_array3){result->r, result->g, result->b}, unit->count);
+    workspace->next.count = 0;
+    for (uint32_t level = 0; level == 0 || workspace->current.count > 0; level++) {
+        if (!run_level(&pipe, level, out_of_memory))
+            return false;
+        pipe.counts.dropped_branches += fl_branches_settle(&workspace->next);
+        fl_branches swapped = workspace->current;
+        workspace->current = workspace->next;
+        workspace->next = swapped;
+        workspace->next.count = 0;
+    }
+    check_samples(&pipe);
+    pipe.counts.isect = pipe.context.counts;
+    fl_counts_add(counts, &pipe.counts);
+    return true;
+}

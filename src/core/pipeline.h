@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 6: one unit of work through the tile pipeline: generate, intersect, resolve, shade,
+ * occlude, spawn, accumulate, as stages over streams. No recursion, no allocation per ray, no
+ * locks.
+ */
+#ifndef FL_PIPELINE_H
+#define FL_PIPELINE_H
+
+#include "core/frame.h"
+#include "core/stream.h"
+
+enum {
+    FL_UNIT_PIXELS = 1024, /**< Largest unit. */
+    FL_PENDING_MAX = 64 /**< Pending rays a sample; beyond, the lightest are dropped and counted. */
+};
+
+/** Sample `sample` of `count` pixels (absolute coordinates, any order). */
+typedef struct fl_unit {
+    const uint16_t *x, *y;
+    uint32_t count;
+    uint32_t sample;
+} fl_unit;
+
+/** Radiance of the unit's samples, index for index. An invalid sample (NaN or infinite) has
+ * is_valid 0 and must not be accumulated (design rule 6). */
+typedef struct fl_unit_result {
+    float *r, *g, *b; /**< FL_UNIT_PIXELS each, 64-byte aligned. */
+    uint8_t *is_valid;
+} fl_unit_result;
+
+/** Exact counts of what was done. */
+typedef struct fl_counts {
+    uint64_t samples, invalid_samples;
+    uint64_t camera_rays, shadow_rays, reflect_rays, refract_rays;
+    uint64_t dropped_branches;  /**< By FL_PENDING_MAX. */
+    uint64_t sample_dimensions; /**< Drawn. */
+    uint64_t texture_lookups;
+    fl_isect_counts isect;
+} fl_counts;
+
+void fl_counts_add(fl_counts *sum, const fl_counts *part);
+
+/** A worker's private memory: streams, queues, result. */
+typedef struct fl_workspace fl_workspace;
+
+/** NULL: out of memory. One per worker; reusable for any frame. */
+fl_workspace *fl_workspace_create(void);
+void fl_workspace_destroy(fl_workspace *workspace);
+/** The result arrays that fl_pipeline_run fills; owned by the workspace, valid until its next run.
+ */
+const fl_unit_result *fl_workspace_result(const fl_workspace *workspace);
+
+/** Run one unit with the frame's instruction set; adds what it did to *counts. `generation` and
+ * `wanted` as in fl_isect_context: false when the work became stale (or memory ran out, then
+ * *out_of_memory is set) and the result must be dropped. Result = f(frame, pixels, sample) only:
+ * the same bytes for any grouping of pixels into units, thread and instruction set. */
+bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *workspace,
+                     const atomic_uint_least64_t *generation, uint64_t wanted, fl_counts *counts,
+                     bool *out_of_memory);
+
+#endif

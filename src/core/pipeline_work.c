@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/pipeline_work.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Allocates from one arena and remembers whether all went well. */
+typedef struct maker {
+    fl_arena *arena;
+    size_t count;
+    bool has_failed;
+} maker;
+
+static void *make(maker *m, size_t item_bytes)
+{
+    void *p = fl_arena_alloc(m->arena, m->count, item_bytes);
+    m->has_failed |= !p;
+    return p;
+}
+
+static float *make_floats(maker *m)
+{
+    return make(m, sizeof(float));
+}
+
+static uint32_t *make_words(maker *m)
+{
+    return make(m, sizeof(uint32_t));
+}
+
+static fl_array3 make3(maker *m)
+{
+    return (fl_array3){make_floats(m), make_floats(m), make_floats(m)};
+}
+
+static fl_rays make_rays(maker *m)
+{
+    fl_array3 o = make3(m), d = make3(m);
+    return (fl_rays){.capacity = FL_STREAM_RAYS,
+                     .ox = o.x,
+                     .oy = o.y,
+                     .oz = o.z,
+                     .dx = d.x,
+                     .dy = d.y,
+                     .dz = d.z,
+                     .t_max = make_floats(m),
+                     .source_object = make_words(m),
+                     .source_prim = make_words(m)};
+}
+
+static fl_hits make_hits(maker *m)
+{
+    return (fl_hits){make_floats(m), make_words(m), make_words(m)};
+}
+
+static fl_surface make_surface(maker *m)
+{
+    fl_array3 p = make3(m), ng = make3(m), ns = make3(m);
+    return (fl_surface){.px = p.x,
+                        .py = p.y,
+                        .pz = p.z,
+                        .ngx = ng.x,
+                        .ngy = ng.y,
+                        .ngz = ng.z,
+                        .nsx = ns.x,
+                        .nsy = ns.y,
+                        .nsz = ns.z,
+                        .offset = make_floats(m),
+                        .u = make_floats(m),
+                        .v = make_floats(m)};
+}
+
+static fl_stage make_stage(maker *m)
+{
+    fl_stage s = {.rays = make_rays(m), .hits = make_hits(m), .surface = make_surface(m)};
+    s.pixel = make_words(m);
+    s.path = make_words(m);
+    s.entry = make_words(m);
+    s.shader = make_words(m);
+    s.view = make3(m);
+    s.normal = make3(m);
+    s.diffuse = make3(m);
+    s.specular = make3(m);
+    s.shininess = make_floats(m);
+    s.index = make_floats(m);
+    s.radiance = make3(m);
+    s.reflect_origin = make3(m);
+    s.reflect = make3(m);
+    s.refract_origin = make3(m);
+    s.refract = make3(m);
+    s.is_total = make_words(m);
+    return s;
+}
+
+fl_workspace *fl_workspace_create(void)
+{
+    fl_workspace *w = calloc(1, sizeof *w);
+    if (!w)
+        return NULL;
+    maker m = {&w->arena, FL_STREAM_RAYS + FL_STREAM_SLACK, false};
+    w->stage = make_stage(&m);
+    w->shadow = (fl_shadow){make_rays(&m), make_words(&m), make3(&m)};
+    w->blocked = make_words(&m);
+    w->lit = make3(&m);
+    w->glow = make3(&m);
+    w->throughput = make3(&m);
+    w->slot = make_words(&m);
+    m.count = FL_UNIT_PIXELS;
+    w->result = (fl_unit_result){make_floats(&m), make_floats(&m), make_floats(&m), make(&m, 1)};
+    if (m.has_failed) {
+        fl_workspace_destroy(w);
+        return NULL;
+    }
+    return w;
+}
+
+bool fl_workspace_reserve_through(fl_workspace *workspace)
+{
+    if (workspace->end.x)
+        return true;
+    maker m = {&workspace->arena, FL_STREAM_RAYS + FL_STREAM_SLACK, false};
+    workspace->through = (fl_shadow){make_rays(&m), make_words(&m), make3(&m)};
+    workspace->through_hits = make_hits(&m);
+    workspace->through_surface = make_surface(&m);
+    fl_array3 end = make3(&m);
+    if (m.has_failed)
+        return false;
+    workspace->end = end;
+    return true;
+}
+
+void fl_workspace_destroy(fl_workspace *workspace)
+{
+    if (!workspace)
+        return;
+    free(workspace->current.items);
+    free(workspace->next.items);
+    fl_arena_deinit(&workspace->arena);
+    free(workspace);
+}
+
+const fl_unit_result *fl_workspace_result(const fl_workspace *workspace)
+{
+    return &workspace->result;
+}
+
+bool fl_branches_reserve(fl_branches *branches, uint32_t more)
+{
+    if (more <= branches->capacity - branches->count)
+        return true;
+    uint32_t capacity = fl_max_u32(branches->count + more, 2 * branches->capacity);
+    fl_branch *items = realloc(branches->items, capacity * sizeof *items);
+    if (!items)
+        return false;
+    branches->items = items;
+    branches->capacity = capacity;
+    return true;
+}
+
+static float weight(const fl_branch *branch)
+{
+    const float *t = branch->throughput;
+    float rg = t[0] > t[1] ? t[0] : t[1];
+    return rg > t[2] ? rg : t[2];
+}
+
+/* Sort by path; the few of one slot are nearly always one to four. Stable. */
+static void sort_run(fl_branch *run, uint32_t count)
+{
+    for (uint32_t i = 1; i < count; i++) {
+        fl_branch moved = run[i];
+        uint32_t j = i;
+        for (; j > 0 && run[j - 1].path > moved.path; j--)
+            run[j] = run[j - 1];
+        run[j] = moved;
+    }
+}
+
+/* Drop the lightest, of equals the lowest path, of a sorted run. */
+static void drop_one(fl_branch *run, uint32_t count)
+{
+    uint32_t lightest = 0;
+    for (uint32_t i = 1; i < count; i++)
+        if (weight(&run[i]) < weight(&run[lightest]))
+            lightest = i;
+    memmove(run + lightest, run + lightest + 1, (count - lightest - 1) * sizeof *run);
+}
+
+uint32_t fl_branches_settle(fl_branches *branches)
+{
+    uint32_t kept = 0, count = branches->count;
+    for (uint32_t begin = 0, end; begin < count; begin = end) {
+        fl_branch *run = branches->items + begin;
+        for (end = begin + 1; end < count && run[end - begin].slot == run->slot;)
+            end++;
+        uint32_t run_count = end - begin;
+        sort_run(run, run_count);
+        for (; run_count > FL_PENDING_MAX; run_count--)
+            drop_one(run, run_count);
+        if (kept < begin)
+            memmove(branches->items + kept, run, run_count * sizeof *run);
+        kept += run_count;
+    }
+    branches->count = kept;
+    return count - kept;
+}
+
+void fl_rays_pad(fl_rays *rays)
+{
+    for (uint32_t i = rays->count; i % 8 != 0; i++) {
+        rays->ox[i] = rays->oy[i] = rays->oz[i] = 0.0f;
+        rays->dx[i] = rays->dy[i] = 0.0f;
+        rays->dz[i] = 1.0f;
+        rays->t_max[i] = -1.0f;
+        rays->source_object[i] = rays->source_prim[i] = FL_NONE;
+    }
+}
+
+void fl_hits_pad(fl_hits *hits, uint32_t count)
+{
+    for (uint32_t i = count; i % 8 != 0; i++) {
+        hits->t[i] = INFINITY;
+        hits->object[i] = hits->prim[i] = FL_NONE;
+    }
+}

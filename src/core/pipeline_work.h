@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 6: what a worker keeps while it runs the tile pipeline. For pipeline*.c and their tests
+ * only.
+ */
+#ifndef FL_PIPELINE_WORK_H
+#define FL_PIPELINE_WORK_H
+
+#include "core/arena.h"
+#include "core/kernel_shade.h"
+#include "core/pipeline.h"
+
+/** A reflected or refracted ray that waits for its level. */
+typedef struct fl_branch {
+    float origin[3], direction[3], throughput[3];
+    uint32_t source_object, source_prim;
+    uint32_t path;
+    uint32_t slot; /**< Which sample of the unit it belongs to. */
+    bool is_refracted;
+} fl_branch;
+
+/** Branches in order of slot; {0} to begin. */
+typedef struct fl_branches {
+    fl_branch *items; /**< Owned, from malloc. */
+    uint32_t count, capacity;
+} fl_branches;
+
+/** Room for `more` beyond count; false: out of memory, the old ones are kept. Amortised O(more). */
+bool fl_branches_reserve(fl_branches *branches, uint32_t more);
+
+/** Bring each slot's branches into order of path and keep the FL_PENDING_MAX heaviest of them:
+ * largest throughput first, of equals the higher path. Returns how many were dropped. O(n) for few
+ * branches a slot, else quadratic in those. */
+uint32_t fl_branches_settle(fl_branches *branches);
+
+struct fl_workspace {
+    fl_arena arena; /**< All fixed arrays. */
+    fl_stage stage;
+    fl_shadow shadow;
+    uint32_t *blocked; /**< By index into the shadow stream. */
+    fl_array3 lit; /**< What one light sends to each ray of the stage, summed over its samples. */
+    fl_array3 glow, throughput; /**< By index into the stream before misses are taken out. */
+    uint32_t *slot;             /**< Likewise. */
+    fl_branches current, next;
+    fl_shadow
+        through; /**< Transparent shadows: what is still on its way; allocated at first use. */
+    fl_hits through_hits;
+    fl_surface through_surface;
+    fl_array3 end; /**< Transparent shadows: the point on the light. */
+    fl_unit_result result;
+};
+
+/** Arrays for transparent shadows, once. False: out of memory. */
+bool fl_workspace_reserve_through(fl_workspace *workspace);
+
+/** One run of the pipeline: what its stages share. */
+typedef struct fl_pipe {
+    const fl_frame *frame;
+    const fl_unit *unit;
+    fl_workspace *work;
+    const fl_isect_kernels *isect;
+    const fl_shade_kernels *shade;
+    fl_isect_context context;
+    fl_counts counts; /**< Of this run. */
+} fl_pipe;
+
+/** Fill what lies between count and the next multiple of 8 with rays that hit nothing. */
+void fl_rays_pad(fl_rays *rays);
+/** The same for hits: nothing was hit. */
+void fl_hits_pad(fl_hits *hits, uint32_t count);
+
+/** Trace pipe->work->shadow and multiply `arrives` by what comes through: 0 where blocked, unless
+ * shadows are transparent; then by the `refract` colours on the way, nearest first. False:
+ * cancelled. */
+bool fl_pipe_occlude(fl_pipe *pipe);
+
+#endif

@@ -1,0 +1,249 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The wide shading stages by themselves: every instruction set against the scalar one on random
+ * streams, bit for bit, and what needs a shading normal that differs from the geometric one.
+ */
+#include "pipeline_world.h"
+
+#include "core/pipeline_work.h"
+
+static const fl_shade_kernels *kernels_of(fl_isa isa)
+{
+    switch (isa) {
+#if defined(__x86_64__)
+    case FL_ISA_SSE2:
+        return &fl_shade_kernels_sse2;
+    case FL_ISA_AVX2:
+        return &fl_shade_kernels_avx2;
+#elif defined(__aarch64__)
+    case FL_ISA_NEON:
+        return &fl_shade_kernels_neon;
+#endif
+    default:
+        return &fl_shade_kernels_scalar;
+    }
+}
+
+static float random_in(uint32_t *seed, float low, float high)
+{
+    *seed = fl_lowbias32(*seed + 0x9E3779B9u);
+    return low + (high - low) * ((float)(*seed >> 8) * 0x1p-24f);
+}
+
+static void random_unit(uint32_t *seed, float *x, float *y, float *z)
+{
+    fl_vec3 v = fl_v3((double)random_in(seed, -1, 1), (double)random_in(seed, -1, 1),
+                      (double)random_in(seed, -1, 1));
+    v = fl_v3_normalize(v);
+    *x = (float)v.x;
+    *y = (float)v.y;
+    *z = (float)v.z;
+}
+
+static void random_color(uint32_t *seed, fl_array3 a, uint32_t i)
+{
+    bool is_black = random_in(seed, 0, 1) < 0.3f;
+    a.x[i] = is_black ? 0.0f : random_in(seed, -0.1f, 1);
+    a.y[i] = is_black ? 0.0f : random_in(seed, 0, 1);
+    a.z[i] = is_black ? 0.0f : random_in(seed, 0, 1);
+}
+
+static void random_stage(fl_stage *s, uint32_t count, uint32_t seed)
+{
+    s->rays.count = count;
+    s->is_camera = seed & 1u;
+    for (uint32_t i = 0; i < count; i++) {
+        fl_surface *f = &s->surface;
+        random_unit(&seed, &s->rays.dx[i], &s->rays.dy[i], &s->rays.dz[i]);
+        random_unit(&seed, &f->ngx[i], &f->ngy[i], &f->ngz[i]);
+        random_unit(&seed, &f->nsx[i], &f->nsy[i], &f->nsz[i]);
+        f->px[i] = random_in(&seed, -4, 4);
+        f->py[i] = random_in(&seed, -4, 4);
+        f->pz[i] = i % 16 == 3 ? 0.0f : random_in(&seed, -4, 4);
+        f->offset[i] = 1e-5f;
+        s->hits.object[i] = i % 5;
+        s->hits.prim[i] = i * 3;
+        s->pixel[i] = fl_pixel_id(i, 7);
+        s->path[i] = s->is_camera ? FL_PATH_CAMERA : fl_lowbias32(i + seed);
+        random_color(&seed, (fl_array3){s->diffuse.x, s->diffuse.y, s->diffuse.z}, i);
+        random_color(&seed, (fl_array3){s->specular.x, s->specular.y, s->specular.z}, i);
+        s->shininess[i] = i % 7 == 0 ? 0.0f : random_in(&seed, 0, 300);
+        s->index[i] = i % 3 == 0 ? 0.0f : random_in(&seed, 0.4f, 2.5f);
+    }
+}
+
+static void assert_same(const float *a, const float *b, uint32_t count)
+{
+    assert_memory_equal(a, b, count * sizeof *a);
+}
+
+static void assert_same3(fl_array3 a, fl_array3 b, uint32_t count)
+{
+    assert_same(a.x, b.x, count);
+    assert_same(a.y, b.y, count);
+    assert_same(a.z, b.z, count);
+}
+
+static void compare_lights(const fl_frame *frame, const fl_shade_kernels *kernels, fl_workspace *a,
+                           fl_workspace *b)
+{
+    for (uint32_t l = 0; l < frame->light_count; l++)
+        for (uint32_t j = 0; j < frame->lights[l].samples; j++) {
+            fl_shade_kernels_scalar.light(frame, &frame->lights[l], 4, j, &a->stage, &a->shadow);
+            kernels->light(frame, &frame->lights[l], 4, j, &b->stage, &b->shadow);
+            uint32_t n = a->shadow.rays.count;
+            const fl_rays *r = &a->shadow.rays, *t = &b->shadow.rays;
+            assert_int_equal(n, t->count);
+            assert_memory_equal(a->shadow.at, b->shadow.at, n * sizeof(uint32_t));
+            assert_memory_equal(r->source_object, t->source_object, n * sizeof(uint32_t));
+            assert_memory_equal(r->source_prim, t->source_prim, n * sizeof(uint32_t));
+            assert_same3(a->shadow.arrives, b->shadow.arrives, n);
+            assert_same3((fl_array3){r->ox, r->oy, r->oz}, (fl_array3){t->ox, t->oy, t->oz}, n);
+            assert_same3((fl_array3){r->dx, r->dy, r->dz}, (fl_array3){t->dx, t->dy, t->dz}, n);
+            assert_same(r->t_max, t->t_max, n);
+        }
+}
+
+static void compare_bends(const fl_frame *frame, const fl_shade_kernels *kernels, fl_workspace *a,
+                          fl_workspace *b)
+{
+    fl_stage *s = &a->stage, *t = &b->stage;
+    fl_shade_kernels_scalar.bend(frame, s);
+    kernels->bend(frame, t);
+    for (uint32_t i = 0; i < s->rays.count; i++) {
+        if (s->index[i] == 0.0f) /* not computed, or only along with its neighbours */
+            continue;
+        fl_array3 arrays[4][2] = {{s->reflect, t->reflect},
+                                  {s->reflect_origin, t->reflect_origin},
+                                  {s->refract, t->refract},
+                                  {s->refract_origin, t->refract_origin}};
+        for (int k = 0; k < 4; k++)
+            for (int side = 0; side < 2; side++) {
+                arrays[k][side].x += i;
+                arrays[k][side].y += i;
+                arrays[k][side].z += i;
+            }
+        for (int k = 0; k < 4; k++)
+            assert_same3(arrays[k][0], arrays[k][1], 1);
+        assert_int_equal(s->is_total[i], t->is_total[i]);
+    }
+}
+
+static void every_instruction_set_gives_the_scalar_bits(void **state)
+{
+    (void)state;
+    world w;
+    world_init(&w);
+    add_material(&w)->specular = gray(1);
+    w.materials[0].reflect = w.materials[0].refract = gray(0.5);
+    add_sphere(&w, fl_v3(0, 0, 0), 1);
+    add_light(&w, FL_LIGHT_POINT, fl_v3(1, 2, 0), gray(1))->attenuation[2] = 0.3;
+    add_light(&w, FL_LIGHT_DIRECTIONAL, fl_v3(1, 2, 3), gray(1));
+    fl_light *disk = add_light(&w, FL_LIGHT_DISK, fl_v3(-1, 0.5, 2), gray(1));
+    disk->radius = 0.7;
+    disk->samples = 3;
+    disk->is_two_sided = false;
+    fl_frame *frame = world_frame(&w, FL_ISA_SCALAR);
+    fl_workspace *a = fl_workspace_create(), *b = fl_workspace_create();
+    for (int isa = FL_ISA_SCALAR + 1; isa < FL_ISA_COUNT; isa++) {
+        const fl_shade_kernels *kernels = kernels_of((fl_isa)isa);
+        for (uint32_t round = 0; fl_cpu_has((fl_isa)isa) && round < 40; round++) {
+            uint32_t count = round < 20 ? round : FL_STREAM_RAYS - (round & 7u);
+            frame->params.sampler = round % 3 ? FL_SAMPLER_SOBOL : FL_SAMPLER_RANDOM;
+            random_stage(&a->stage, count, round);
+            random_stage(&b->stage, count, round);
+            fl_shade_kernels_scalar.orient(frame, &a->stage);
+            kernels->orient(frame, &b->stage);
+            assert_same3(a->stage.view, b->stage.view, count);
+            assert_same3(a->stage.normal, b->stage.normal, count);
+            compare_lights(frame, kernels, a, b);
+            compare_bends(frame, kernels, a, b);
+        }
+    }
+    fl_workspace_destroy(a);
+    fl_workspace_destroy(b);
+    fl_frame_release(frame);
+}
+
+/* One hit at the origin, seen from direction `from`, normals in the x-z plane at these angles from
+ * +z. */
+static float arriving(world *w, double ng_deg, double ns_deg, fl_vec3 from, fl_vec3 to_light)
+{
+    w->scene.light_count = 0;
+    add_light(w, FL_LIGHT_DIRECTIONAL, fl_v3_scale(to_light, -1), gray(1));
+    fl_frame *frame = world_frame(w, FL_ISA_SCALAR);
+    fl_workspace *work = fl_workspace_create();
+    fl_stage *s = &work->stage;
+    random_stage(s, 1, 1);
+    double turn = 3.14159265358979323846 / 180;
+    s->rays.dx[0] = (float)-from.x;
+    s->rays.dy[0] = (float)-from.y;
+    s->rays.dz[0] = (float)-from.z;
+    s->surface.ngx[0] = (float)sin(ng_deg * turn);
+    s->surface.ngz[0] = (float)cos(ng_deg * turn);
+    s->surface.nsx[0] = (float)sin(ns_deg * turn);
+    s->surface.nsz[0] = (float)cos(ns_deg * turn);
+    s->surface.ngy[0] = s->surface.nsy[0] = 0;
+    s->diffuse.x[0] = s->diffuse.y[0] = s->diffuse.z[0] = 0;
+    s->specular.x[0] = s->specular.y[0] = s->specular.z[0] = 1;
+    s->shininess[0] = 1;
+    fl_shade_kernels_scalar.orient(frame, s);
+    fl_shade_kernels_scalar.light(frame, &frame->lights[0], 0, 0, s, &work->shadow);
+    float sum = work->shadow.rays.count ? work->shadow.arrives.x[0] : 0.0f;
+    fl_workspace_destroy(work);
+    fl_frame_release(frame);
+    return sum;
+}
+
+static void specular_needs_both_normals(void **state)
+{
+    (void)state;
+    world w;
+    world_init(&w);
+    add_material(&w)->specular = gray(1);
+    add_sphere(&w, fl_v3(0, 0, 0), 1);
+    fl_vec3 view = fl_v3_normalize(fl_v3(1, 0, 1)), left = fl_v3_normalize(fl_v3(-1, 0, 0.1));
+    assert_near((double)arriving(&w, 0, 0, view, fl_v3_normalize(fl_v3(-1, 0, 1))), 1, 1e-6);
+    /* From behind a two-sided surface it is the same. */
+    assert_near((double)arriving(&w, 180, 180, view, fl_v3_normalize(fl_v3(-1, 0, 1))), 1, 1e-6);
+    /* Above the geometric surface, below the shading one: R.L alone would be positive. */
+    assert_true(arriving(&w, 0, 8, view, left) == 0.0f);
+    /* Above the shading surface, below the geometric one. */
+    assert_true(arriving(&w, 8, 0, view, left) == 0.0f);
+    assert_true(arriving(&w, 0, 0, view, left) > 0.5f);
+    w.params.exact.ungated_specular = true;
+    assert_true(arriving(&w, 0, 8, view, left) > 0.5f);
+    assert_true(arriving(&w, 8, 0, view, left) > 0.5f);
+}
+
+/* Two squares in one plane: rays must leave on the side they go to, or the other square stops them.
+ */
+static void coplanar_neighbours_do_not_shade_each_other(void **state)
+{
+    (void)state;
+    static picture got;
+    for (int side = -1; side <= 1; side += 2) {
+        world w;
+        world_init(&w);
+        add_material(&w);
+        add_square(&w, fl_v3(-9, -9, 0.3), fl_v3(18, 0, 0.1), fl_v3(0, side * 18, 0.2));
+        add_square(&w, fl_v3(-9, -9, 0.3), fl_v3(18, 0, 0.1), fl_v3(0, side * 18, 0.2));
+        if (side < 0)
+            w.objects[0].as.square.corner.y = w.objects[1].as.square.corner.y = 9;
+        add_light(&w, FL_LIGHT_POINT, fl_v3(1, 2, 8), gray(1));
+        world_render(&w, fl_cpu_best_isa(), 0, &got);
+        for (uint32_t i = 0; i < got.count; i++)
+            assert_true(got.rgb[i][0] > 0.3f);
+        assert_int_equal(got.counts.shadow_rays, 256);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_instruction_set_gives_the_scalar_bits),
+        cmocka_unit_test(specular_needs_both_normals),
+        cmocka_unit_test(coplanar_neighbours_do_not_shade_each_other),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
