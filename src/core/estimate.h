@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 7: how far the picture still is from the converged one, predicted from the picture alone.
+ *
+ * Snapshot rule: at n = 2^k samples, V = mean over pixels and channels of (mean after n - mean
+ * after n/2)^2 and RMSE = sqrt(V) 2^(0.5 - p), where the error falls like n^-p: p = 0.6, or
+ * measured from V(n/4) and V(n) and clamped to [0.5, 0.75]. Between powers of two e(n) = e(2^k)
+ * (2^k / n)^p. The interval is two standard errors by the spread of V over squares of 16 x 16
+ * pixels, at least 20 % (the uncertainty of p). Low index bits make no usable classes for
+ * low-discrepancy points, contiguous halves do: measured in docs/accuracy.md.
+ *
+ * The same numbers for any number of threads: a tile is captured when it has exactly 2^k samples,
+ * and sums run in a fixed order.
+ */
+#ifndef FL_ESTIMATE_H
+#define FL_ESTIMATE_H
+
+#include "core/film.h"
+#include "core/schedule.h"
+
+/** Predicted error of the current mean. Linear radiance units. */
+typedef struct fl_error_estimate {
+    bool is_known; /**< False below 4 samples; all else is then 0. */
+    double rmse, low, high;
+    double samples;  /**< The sample count it holds for. */
+    double exponent; /**< p, the error's rate of falling. */
+} fl_error_estimate;
+
+/** Samples a pixel needs to reach a target. */
+typedef struct fl_error_forecast {
+    double samples;   /**< With the estimate's own p. */
+    double low, high; /**< With p = 0.7 and p = 0.5, widened to contain `samples`. */
+} fl_error_forecast;
+
+/** Predict when the error will be `target_rmse` > 0: times seconds per sample, when in time. False:
+ * the error is not known yet. Already reached: the present number. */
+bool fl_error_predict(const fl_error_estimate *error, double target_rmse,
+                      fl_error_forecast *out_forecast);
+
+typedef struct fl_estimate fl_estimate;
+
+bool fl_estimate_bytes(uint32_t width, uint32_t height, size_t *out_bytes);
+/** NULL: out of memory. */
+fl_estimate *fl_estimate_create(uint32_t width, uint32_t height);
+void fl_estimate_destroy(fl_estimate *estimate);
+void fl_estimate_reset(fl_estimate *estimate);
+
+/** All pixels of `rect` (corners at multiples of 16 or the film's edge) have exactly `samples`.
+ * Does nothing unless that is a power of two; each power in turn, each pixel once. */
+void fl_estimate_capture(fl_estimate *estimate, const fl_film *film, const fl_rect *rect,
+                         uint32_t samples);
+
+/** The estimate when every pixel has at least `samples` samples. */
+void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_estimate *out_error);
+
+/** Let the render go on to this many samples, then ask again: the least n up to the next power of
+ * two whose error is within target_rmse, else that power; n <= samples means the target is reached.
+ */
+uint32_t fl_estimate_next_stop(const fl_estimate *estimate, uint32_t samples, double target_rmse);
+
+#endif

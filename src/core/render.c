@@ -1,0 +1,367 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/render_state.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <time.h>
+
+#include "core/pool.h"
+
+static bool start_workers(fl_render *render, uint32_t wanted, fl_diags *diags)
+{
+    render->workers = calloc(wanted, sizeof *render->workers);
+    if (!render->workers)
+        return fl_out_of_memory(diags, "the render's threads");
+    while (render->worker_count < wanted) {
+        fl_worker *worker = &render->workers[render->worker_count];
+        worker->render = render;
+        worker->workspace = fl_workspace_create();
+        if (!worker->workspace)
+            return fl_out_of_memory(diags, "the render's queues");
+        int error = pthread_create(&worker->thread, NULL, fl_worker_main, worker);
+        if (error != 0) {
+            fl_workspace_destroy(worker->workspace);
+            return fl_environment_error(diags, "cannot start render thread %u of %u (error %d)",
+                                        render->worker_count + 1, wanted, error);
+        }
+        render->worker_count++;
+    }
+    return true;
+}
+
+fl_render *fl_render_create(const fl_render_options *options, fl_diags *diags)
+{
+    fl_render *render = calloc(1, sizeof *render);
+    if (!render) {
+        fl_out_of_memory(diags, "the render");
+        return NULL;
+    }
+    render->options = *options;
+    if (render->options.memory_limit_bytes == 0)
+        render->options.memory_limit_bytes = FL_RENDER_MEMORY_LIMIT;
+    render->revision = 1;
+    atomic_init(&render->generation, 0);
+    pthread_mutex_init(&render->lock, NULL);
+    pthread_cond_init(&render->work, NULL);
+    pthread_condattr_t attributes;
+    pthread_condattr_init(&attributes);
+    pthread_condattr_setclock(&attributes, CLOCK_MONOTONIC);
+    pthread_cond_init(&render->stopped, &attributes);
+    pthread_condattr_destroy(&attributes);
+    render->tonemapper = fl_tonemapper_create();
+    bool is_started = render->tonemapper
+                          ? start_workers(render, fl_thread_count(options->thread_count), diags)
+                          : fl_out_of_memory(diags, "the tone map");
+    if (!is_started) {
+        fl_render_destroy(render);
+        return NULL;
+    }
+    return render;
+}
+
+void fl_render_destroy(fl_render *render)
+{
+    if (!render)
+        return;
+    pthread_mutex_lock(&render->lock);
+    render->should_quit = true;
+    atomic_store_explicit(&render->generation, UINT64_MAX, memory_order_relaxed);
+    pthread_cond_broadcast(&render->work);
+    pthread_mutex_unlock(&render->lock);
+    for (uint32_t i = 0; i < render->worker_count; i++) {
+        pthread_join(render->workers[i].thread, NULL);
+        fl_workspace_destroy(render->workers[i].workspace);
+    }
+    if (render->shown != render->current)
+        fl_job_destroy(render->shown);
+    fl_job_destroy(render->current);
+    fl_job_destroy(render->spare);
+    fl_job_destroy(render->pending_job);
+    fl_frame_release(render->pending_frame);
+    fl_tonemapper_destroy(render->tonemapper);
+    free(render->rows);
+    free(render->workers);
+    pthread_cond_destroy(&render->stopped);
+    pthread_cond_destroy(&render->work);
+    pthread_mutex_destroy(&render->lock);
+    free(render);
+}
+
+/* --- Restart -----------------------------------------------------------------------------------
+ */
+
+static bool fits(const fl_job *job, const fl_frame *frame)
+{
+    return job && job->width == frame->width && job->height == frame->height;
+}
+
+/* Room for fl_render_display's rows. The owner's alone: no lock. */
+static bool reserve_rows(fl_render *render, uint32_t width, fl_diags *diags)
+{
+    size_t floats = (size_t)width * 3 * FL_BAND_ROWS;
+    if (floats <= render->row_floats)
+        return true;
+    float *rows = realloc(render->rows, floats * sizeof *rows);
+    if (!rows)
+        return fl_out_of_memory(diags, "the display");
+    render->rows = rows;
+    render->row_floats = floats;
+    return true;
+}
+
+/* A new job beside those that stay, within the memory limit. */
+static fl_job *allocate_job(const fl_render *render, const fl_frame *frame, bool is_abandoning,
+                            fl_diags *diags)
+{
+    size_t needed = 0, limit = render->options.memory_limit_bytes;
+    bool is_countable = fl_job_bytes(frame->width, frame->height, &needed);
+    const fl_job *stays[] = {
+        render->shown, is_abandoning || render->current == render->shown ? NULL : render->current};
+    for (size_t i = 0; i < FL_COUNT_OF(stays); i++)
+        if (stays[i])
+            is_countable &= !__builtin_add_overflow(needed, stays[i]->bytes, &needed);
+    if (!is_countable || needed > limit) {
+        fl_environment_error(diags,
+                             "rendering %u x %u pixels needs %zu bytes, the memory limit is %zu",
+                             frame->width, frame->height, needed, limit);
+        return NULL;
+    }
+    fl_job *job = fl_job_create(frame->width, frame->height);
+    if (!job)
+        fl_environment_error(diags, "out of memory: rendering %u x %u pixels needs %zu bytes",
+                             frame->width, frame->height, needed);
+    return job;
+}
+
+/* Find a job of the frame's size among those not in use. */
+static fl_job *reuse_job(fl_render *render, const fl_frame *frame, bool is_abandoning,
+                         fl_trash *trash)
+{
+    fl_job **free_jobs[] = {&render->pending_job, &render->spare,
+                            is_abandoning ? &render->current : NULL};
+    for (size_t i = 0; i < FL_COUNT_OF(free_jobs); i++) {
+        if (!free_jobs[i] || !fits(*free_jobs[i], frame))
+            continue;
+        fl_job *job = *free_jobs[i];
+        *free_jobs[i] = NULL;
+        if (job->frame)
+            trash->frames[trash->frame_count++] = job->frame;
+        job->frame = NULL;
+        return job;
+    }
+    return NULL;
+}
+
+/* The lock is held. Takes the reference to `frame` when true. */
+static bool restart(fl_render *render, fl_frame *frame, fl_trash *trash, fl_diags *diags)
+{
+    const fl_job *current = render->current;
+    bool has_picture = !current || fl_schedule_complete_ranks(current->schedule) > 0;
+    bool is_pending = !has_picture && render->state == FL_RENDER_RUNNING;
+    /* Begin at once although nothing of the current generation was seen: it will not be. */
+    bool is_abandoning = !has_picture && !is_pending;
+    bool inherits = is_pending && fits(render->shown, frame);
+
+    fl_job *job = NULL;
+    if (!inherits) {
+        job = reuse_job(render, frame, is_abandoning, trash);
+        if (!job) {
+            fl_render_drop_spare(render, trash);
+            job = allocate_job(render, frame, is_abandoning, diags);
+        }
+        if (!job)
+            return false;
+    }
+    if (render->pending_frame)
+        trash->frames[trash->frame_count++] = render->pending_frame;
+    render->pending_frame = NULL;
+    fl_render_retire(render, render->pending_job, trash);
+    render->pending_job = NULL;
+    render->newest_generation++;
+    render->requested_at = fl_render_now();
+    if (is_pending) {
+        render->pending_frame = frame;
+        render->pending_job = job;
+        return true;
+    }
+    if (is_abandoning)
+        fl_render_retire(render, render->current, trash);
+    fl_render_begin(render, job, frame);
+    return true;
+}
+
+bool fl_render_restart(fl_render *render, fl_compiled *scene, const fl_params *params,
+                       fl_diags *diags)
+{
+    fl_frame *frame = fl_frame_create(scene, params, diags);
+    if (!frame)
+        return false;
+    fl_trash trash = {0};
+    bool is_done = reserve_rows(render, frame->width, diags);
+    if (is_done) {
+        pthread_mutex_lock(&render->lock);
+        is_done = restart(render, frame, &trash, diags);
+        pthread_mutex_unlock(&render->lock);
+    }
+    if (!is_done)
+        fl_frame_release(frame);
+    fl_trash_empty(&trash);
+    return is_done;
+}
+
+void fl_render_set_limits(fl_render *render, const fl_render_limits *limits)
+{
+    pthread_mutex_lock(&render->lock);
+    render->limits = *limits;
+    fl_render_update(render);
+    pthread_cond_signal(&render->work);
+    pthread_mutex_unlock(&render->lock);
+}
+
+void fl_render_set_paused(fl_render *render, bool is_paused)
+{
+    pthread_mutex_lock(&render->lock);
+    render->is_paused = is_paused;
+    fl_render_update(render);
+    pthread_mutex_unlock(&render->lock);
+}
+
+/* --- Looking -----------------------------------------------------------------------------------
+ */
+
+/* The lock is held. */
+static void fill_progress(const fl_render *render, const fl_job *job, fl_progress *out_progress)
+{
+    *out_progress = (fl_progress){
+        .state = render->state,
+        .newest_generation = render->newest_generation,
+        .cancel_seconds = render->cancel_seconds,
+    };
+    if (!job)
+        return;
+    out_progress->generation = job->generation;
+    out_progress->width = job->width;
+    out_progress->height = job->height;
+    out_progress->complete_samples = fl_schedule_complete_samples(job->schedule);
+    out_progress->mean_samples =
+        (double)fl_schedule_total_samples(job->schedule) / ((double)job->width * job->height);
+    out_progress->complete_ranks = fl_schedule_complete_ranks(job->schedule);
+    out_progress->seconds = fl_job_seconds(render, job);
+    out_progress->cpu_seconds = job->cpu_seconds;
+    out_progress->first_picture_seconds = job->first_picture_seconds;
+    out_progress->first_sample_seconds = job->first_sample_seconds;
+    out_progress->counts = job->counts;
+    fl_estimate_read(job->estimate, out_progress->complete_samples, &out_progress->error);
+}
+
+void fl_render_progress(fl_render *render, fl_progress *out_progress)
+{
+    pthread_mutex_lock(&render->lock);
+    render->is_notified = false;
+    fill_progress(render, render->current, out_progress);
+    pthread_mutex_unlock(&render->lock);
+}
+
+bool fl_render_wait(fl_render *render, double seconds)
+{
+    struct timespec until;
+    clock_gettime(CLOCK_MONOTONIC, &until);
+    double whole = seconds < 0.0 ? 0.0 : floor(fl_min(seconds, 1e9));
+    double part = seconds < 0.0 ? 0.0 : fl_min(seconds, 1e9) - whole;
+    until.tv_sec += (time_t)whole;
+    until.tv_nsec += (long)(part * 1e9);
+    if (until.tv_nsec >= 1000000000L) {
+        until.tv_sec++;
+        until.tv_nsec -= 1000000000L;
+    }
+    pthread_mutex_lock(&render->lock);
+    int error = 0;
+    while (render->state == FL_RENDER_RUNNING && error != ETIMEDOUT)
+        error = seconds < 0.0 ? pthread_cond_wait(&render->stopped, &render->lock)
+                              : pthread_cond_timedwait(&render->stopped, &render->lock, &until);
+    bool is_done = render->state == FL_RENDER_DONE;
+    pthread_mutex_unlock(&render->lock);
+    return is_done;
+}
+
+/* Copy rows of the shown picture. False: it is no longer that of `generation`. */
+static bool copy_rows(fl_render *render, uint64_t generation, uint32_t begin, uint32_t end,
+                      bool is_filled, float *out_rgb)
+{
+    pthread_mutex_lock(&render->lock);
+    const fl_job *job = render->shown;
+    bool is_same = job->generation == generation;
+    if (is_same && is_filled && fl_schedule_complete_samples(job->schedule) == 0)
+        fl_film_rows_filled(job->film, begin, end, out_rgb);
+    else if (is_same)
+        for (uint32_t y = begin; y < end; y++)
+            fl_film_row(job->film, 0, y, job->width,
+                        out_rgb + (size_t)3 * (y - begin) * job->width);
+    pthread_mutex_unlock(&render->lock);
+    return is_same;
+}
+
+/* Progress and revision of the shown picture; 0 x 0 without one. */
+static uint64_t look(fl_render *render, fl_progress *out_progress)
+{
+    pthread_mutex_lock(&render->lock);
+    render->is_notified = false;
+    fill_progress(render, render->shown, out_progress);
+    uint64_t revision = render->revision;
+    pthread_mutex_unlock(&render->lock);
+    return revision;
+}
+
+static bool display_picture(fl_render *render, const fl_progress *picture,
+                            const fl_tonemap *tonemap, uint8_t *out_rgba)
+{
+    size_t width = picture->width;
+    for (uint32_t y = 0; y < picture->height; y += FL_BAND_ROWS) {
+        uint32_t end = fl_min_u32(y + FL_BAND_ROWS, picture->height);
+        if (!copy_rows(render, picture->generation, y, end, true, render->rows))
+            return false;
+        fl_tonemapper_run(render->tonemapper, tonemap, render->rows, (end - y) * width,
+                          out_rgba + 4 * width * y);
+    }
+    return true;
+}
+
+static bool copy_picture(fl_render *render, const fl_progress *picture, float *out_rgb)
+{
+    for (uint32_t y = 0; y < picture->height; y += FL_BAND_ROWS) {
+        uint32_t end = fl_min_u32(y + FL_BAND_ROWS, picture->height);
+        if (!copy_rows(render, picture->generation, y, end, false,
+                       out_rgb + (size_t)3 * picture->width * y))
+            return false;
+    }
+    return true;
+}
+
+bool fl_render_display(fl_render *render, uint64_t *revision, const fl_tonemap *tonemap,
+                       uint8_t *out_rgba, size_t capacity_bytes, fl_progress *out_progress)
+{
+    for (;;) { /* Again only when another generation became the picture amid the copy. */
+        uint64_t newest = look(render, out_progress);
+        size_t pixels = (size_t)out_progress->width * out_progress->height;
+        if (pixels == 0 || newest == *revision || capacity_bytes < 4 * pixels)
+            return false;
+        if (display_picture(render, out_progress, tonemap, out_rgba)) {
+            *revision = newest;
+            return true;
+        }
+    }
+}
+
+bool fl_render_mean(fl_render *render, float *out_rgb, size_t capacity_floats,
+                    fl_progress *out_progress)
+{
+    for (;;) {
+        look(render, out_progress);
+        size_t pixels = (size_t)out_progress->width * out_progress->height;
+        if (pixels == 0 || capacity_floats < 3 * pixels)
+            return false;
+        if (copy_picture(render, out_progress, out_rgb))
+            return true;
+    }
+}

@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 8: the progressive render: workers, film, restart and cancel. The thread that creates a
+ * render is its owner; functions are the owner's unless they say "any thread". The owner never
+ * waits for a worker, except in fl_render_wait and fl_render_destroy.
+ */
+#ifndef FL_RENDER_H
+#define FL_RENDER_H
+
+#include "core/estimate.h"
+#include "core/frame.h"
+#include "core/tonemap.h"
+
+typedef struct fl_render fl_render;
+
+typedef struct fl_render_options {
+    uint32_t thread_count;     /**< 0: one per online CPU. */
+    size_t memory_limit_bytes; /**< Films and what grows with them; 0: FL_RENDER_MEMORY_LIMIT. */
+    bool is_low_priority;      /**< Workers yield to the desktop (nice + 1; Linux). */
+    /** Called by a worker, with no lock held, when there is something new to show or the render is
+     * done or has failed; at most once until the next fl_render_display or fl_render_progress.
+     * NULL: none. Must not call the render. */
+    void (*notify)(void *context);
+    void *notify_context;
+} fl_render_options;
+
+#define FL_RENDER_MEMORY_LIMIT ((size_t)8 << 30)
+
+typedef enum fl_render_state {
+    FL_RENDER_EMPTY, /**< Nothing to render yet. */
+    FL_RENDER_RUNNING,
+    FL_RENDER_PAUSED,
+    FL_RENDER_DONE,  /**< Reached the sample cap, the noise target or the time limit: workers are
+                        parked. */
+    FL_RENDER_FAILED /**< A worker ran out of memory; film is as it was. */
+} fl_render_state;
+
+/** When to stop, whichever comes first. 0 means: no such limit. Changing limits never restarts. A
+ * render always stops with the same number of samples in every pixel, at least 1: the film is then
+ * the film of so many samples. */
+typedef struct fl_render_limits {
+    uint32_t samples;
+    double noise_rmse; /**< Tested where it can be known: from 4 samples on, the same for any number
+                          of threads. */
+    double seconds;    /**< Of rendering since the restart, pauses excluded; begun passes are
+                          completed. */
+} fl_render_limits;
+
+typedef struct fl_progress {
+    fl_render_state state;
+    uint64_t generation; /**< Which restart this picture belongs to: they are numbered from 1. 0:
+                            none. */
+    uint64_t newest_generation; /**< The latest restart, rendering or pending. */
+    uint32_t width, height;     /**< Of the rendered part. */
+    uint32_t complete_samples;  /**< Every pixel has this many. */
+    double mean_samples;     /**< Finer grained; equal to complete_samples when all pixels have the
+                                same. */
+    uint32_t complete_ranks; /**< Bayer ranks of sample 0 that are complete, 0 to 64. */
+    double seconds, cpu_seconds;  /**< Since the restart, pauses excluded; of committed units. */
+    double first_picture_seconds; /**< From fl_render_restart to rank 0 complete, wall time; 0 until
+                                     then. */
+    double first_sample_seconds;  /**< From fl_render_restart to sample 0 complete, wall time; 0
+                                     until then. */
+    double cancel_seconds;   /**< The current generation's beginning until the last stale unit was
+                                dropped. */
+    fl_counts counts;        /**< Of committed units: the same for any number of threads. */
+    fl_error_estimate error; /**< Of the mean; between passes that of the complete samples. */
+} fl_progress;
+
+/** Start the workers, parked. NULL after adding an error. */
+fl_render *fl_render_create(const fl_render_options *options, fl_diags *diags);
+
+/** Stop and join the workers; NULL is allowed. */
+void fl_render_destroy(fl_render *render);
+
+/** Begin again with new parameters; returns at once. Workers drop stale units within 64 rays.
+ * Retains `scene`, copies `params`. The newest call wins, but while rank 0 of a generation is not
+ * complete a further restart is kept pending until it is, so that a fast mouse cannot starve the
+ * screen (however long rank 0 takes; not while paused). The film so far stays readable until rank 0
+ * of the new one is complete. False after adding an error (parameters, memory or the memory limit):
+ * the old render goes on untouched. */
+bool fl_render_restart(fl_render *render, fl_compiled *scene, const fl_params *params,
+                       fl_diags *diags);
+
+void fl_render_set_limits(fl_render *render, const fl_render_limits *limits);
+
+/** Units that are out when a pause begins are completed; the film's bytes do not depend on pauses.
+ */
+void fl_render_set_paused(fl_render *render, bool is_paused);
+
+/** What has been done so far for the generation being rendered. Any thread. */
+void fl_render_progress(fl_render *render, fl_progress *out_progress);
+
+/** Block until done, failed, or `seconds` have passed (< 0: forever); returns at once when paused
+ * or empty. True: done. */
+bool fl_render_wait(fl_render *render, double seconds);
+
+/** Tone-map the mean of the picture to show to RGBA bytes, top row first, width * height * 4, if
+ * there is anything newer than *revision (0: whatever there is, for a change of tone map); then
+ * updates it. *out_progress is that of the picture to show, which may be the previous generation's.
+ * False: nothing new, or `capacity_bytes` too small; out_progress then tells the size (0 x 0: no
+ * picture yet). Unfinished first samples are hole-filled. Locks the film for a few rows at a time.
+ */
+bool fl_render_display(fl_render *render, uint64_t *revision, const fl_tonemap *tonemap,
+                       uint8_t *out_rgba, size_t capacity_bytes, fl_progress *out_progress);
+
+/** Copy the mean of the picture to show, linear RGB floats as fl_film_mean: what is saved and
+ * hashed. `capacity_floats` must be at least 3 * width * height. False: no picture yet, or too
+ * small. Any thread. */
+bool fl_render_mean(fl_render *render, float *out_rgb, size_t capacity_floats,
+                    fl_progress *out_progress);
+
+#endif

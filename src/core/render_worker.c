@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+#include "core/render_state.h"
+
+#include <sys/resource.h>
+#include <time.h>
+
+static double thread_cpu_seconds(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* A unit on its way through a worker. */
+typedef struct errand {
+    uint64_t generation;
+    fl_work work;
+    fl_unit unit;
+    fl_counts counts;
+    bool is_complete, is_out_of_memory;
+} errand;
+
+/* Take a unit and what is needed to do it without the lock. */
+static bool take(fl_worker *worker, errand *out_errand, fl_trash *trash)
+{
+    fl_render *render = worker->render;
+    fl_job *job = render->current;
+    if (render->state != FL_RENDER_RUNNING || !fl_schedule_next(job->schedule, &out_errand->work))
+        return false;
+    render->out_units++;
+    out_errand->generation = job->generation;
+    if (worker->frame != job->frame) {
+        if (worker->frame)
+            trash->frames[trash->frame_count++] = worker->frame;
+        worker->frame = fl_frame_retain(job->frame);
+    }
+    if (render->parked > 0 && fl_schedule_has_work(job->schedule))
+        pthread_cond_signal(&render->work);
+    return true;
+}
+
+static void run(fl_worker *worker, errand *e)
+{
+    e->unit.x = worker->x;
+    e->unit.y = worker->y;
+    e->unit.sample = e->work.sample;
+    e->unit.count =
+        fl_work_pixels(&e->work, worker->frame->x0, worker->frame->y0, worker->x, worker->y);
+    e->counts = (fl_counts){0};
+    e->is_out_of_memory = false;
+    e->is_complete =
+        fl_pipeline_run(worker->frame, &e->unit, worker->workspace, &worker->render->generation,
+                        e->generation, &e->counts, &e->is_out_of_memory);
+}
+
+/* Put the samples into the film and see what that completes. */
+static void commit(fl_worker *worker, const errand *e, double cpu_seconds, fl_trash *trash)
+{
+    fl_render *render = worker->render;
+    fl_job *job = render->current;
+    fl_film_add(job->film, &e->unit, fl_workspace_result(worker->workspace), worker->frame->x0,
+                worker->frame->y0);
+    fl_counts_add(&job->counts, &e->counts);
+    job->cpu_seconds += cpu_seconds;
+    fl_rect rect;
+    if (fl_schedule_commit(job->schedule, &e->work, &rect))
+        fl_estimate_capture(job->estimate, job->film, &rect, e->work.sample + 1);
+    bool is_picture = job != render->shown && fl_schedule_complete_ranks(job->schedule) > 0;
+    bool is_first_sample =
+        job->first_sample_seconds <= 0.0 && fl_schedule_complete_samples(job->schedule) > 0;
+    if (is_picture)
+        job->first_picture_seconds = fl_render_now() - job->requested_at;
+    if (is_first_sample)
+        job->first_sample_seconds = fl_render_now() - job->requested_at;
+    if (is_picture)
+        fl_render_show_current(render, trash);
+    if (job == render->shown)
+        render->revision++;
+}
+
+/* A unit has come back. True: the owner should hear of it. */
+static bool give_back(fl_worker *worker, const errand *e, fl_trash *trash)
+{
+    fl_render *render = worker->render;
+    double cpu_now = thread_cpu_seconds(), cpu_seconds = cpu_now - worker->cpu_seconds_seen;
+    worker->cpu_seconds_seen = cpu_now;
+    if (!render->current || e->generation != render->current->generation) {
+        if (--render->stale_units == 0)
+            render->cancel_seconds = fl_render_now() - render->begun_at;
+        return false;
+    }
+    render->out_units--;
+    uint64_t revision = render->revision;
+    if (e->is_complete)
+        commit(worker, e, cpu_seconds, trash);
+    else if (e->is_out_of_memory)
+        render->has_failed = true;
+    fl_render_update(render);
+    return render->revision != revision || render->state != FL_RENDER_RUNNING;
+}
+
+/* Nothing to do: let go of the scene, so that a parked worker keeps nothing alive, and sleep. */
+static void park(fl_worker *worker)
+{
+    fl_render *render = worker->render;
+    if (worker->frame) {
+        fl_frame *frame = worker->frame;
+        worker->frame = NULL;
+        pthread_mutex_unlock(&render->lock);
+        fl_frame_release(frame);
+        pthread_mutex_lock(&render->lock);
+        return; /* Look again: something may have come meanwhile. */
+    }
+    render->parked++;
+    pthread_cond_wait(&render->work, &render->lock);
+    render->parked--;
+}
+
+void *fl_worker_main(void *argument)
+{
+    fl_worker *worker = argument;
+    fl_render *render = worker->render;
+    if (render->options.is_low_priority) /* On Linux `who` 0 is this thread alone. */
+        setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 1);
+    worker->cpu_seconds_seen = thread_cpu_seconds();
+    errand e;
+    pthread_mutex_lock(&render->lock);
+    while (!render->should_quit) {
+        fl_trash trash = {0};
+        if (!take(worker, &e, &trash)) {
+            park(worker);
+            continue;
+        }
+        pthread_mutex_unlock(&render->lock);
+        fl_trash_empty(&trash);
+        run(worker, &e);
+        pthread_mutex_lock(&render->lock);
+        bool should_notify = give_back(worker, &e, &trash) && !render->is_notified;
+        render->is_notified |= should_notify;
+        bool calls = should_notify && render->options.notify;
+        if (calls || trash.frame_count > 0 || trash.job_count > 0) {
+            pthread_mutex_unlock(&render->lock);
+            if (calls)
+                render->options.notify(render->options.notify_context);
+            fl_trash_empty(&trash);
+            pthread_mutex_lock(&render->lock);
+        }
+    }
+    pthread_mutex_unlock(&render->lock);
+    fl_frame_release(worker->frame);
+    worker->frame = NULL;
+    return NULL;
+}

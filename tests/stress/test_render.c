@@ -1,0 +1,407 @@
+/* SPDX-License-Identifier: MIT */
+#include "render_kit.h"
+
+#include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
+
+enum { W = 100, H = 77, X0 = 8, Y0 = 3 };
+
+static const uint32_t thread_counts[] = {1, 2, 3, 7};
+
+static void any_number_of_threads_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    static const uint32_t sizes[][2] = {{1, 1}, {5, 300}, {64, 64}, {W, H}, {200, 150}};
+    for (size_t t = 0; t < FL_COUNT_OF(thread_counts); t++) {
+        fl_render *render = kit_render(thread_counts[t]);
+        for (size_t i = 0; i < FL_COUNT_OF(sizes); i++) {
+            uint32_t w = sizes[i][0], h = sizes[i][1];
+            kit_limit(render, 18);
+            kit_restart(render, 77, X0, Y0, w, h);
+            assert_true(fl_render_wait(render, -1.0));
+            kit_assert_film(render, 77, X0, Y0, w, h, 18);
+        }
+        fl_render_destroy(render);
+    }
+}
+
+static void a_raised_cap_goes_on_and_a_lowered_one_keeps(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(3);
+    kit_limit(render, 5);
+    kit_restart(render, 1, X0, Y0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 1, X0, Y0, W, H, 5);
+    kit_limit(render, 33);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 1, X0, Y0, W, H, 33);
+    kit_limit(render, 2);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 1, X0, Y0, W, H, 33);
+    fl_render_destroy(render);
+}
+
+static void a_lowered_cap_amid_the_work_ends_even(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(3);
+    for (uint32_t round = 0; round < 20; round++) {
+        kit_limit(render, 0);
+        fake_permit(40 + 23 * round);
+        kit_restart(render, round, X0, Y0, W, H);
+        fake_await_waiting(1);
+        kit_limit(render, 1);
+        fake_permit(UINT64_MAX);
+        assert_true(fl_render_wait(render, -1.0));
+        fl_progress progress;
+        fl_render_progress(render, &progress);
+        kit_assert_film(render, round, X0, Y0, W, H, progress.complete_samples);
+    }
+    fl_render_destroy(render);
+}
+
+static void pauses_leave_the_bytes_alone(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(2);
+    kit_limit(render, 20);
+    kit_restart(render, 9, X0, Y0, W, H);
+    for (int i = 0; i < 200; i++)
+        fl_render_set_paused(render, i % 2 == 0);
+    fl_render_set_paused(render, true);
+    fl_progress progress;
+    fl_render_progress(render, &progress);
+    if (progress.state != FL_RENDER_DONE) {
+        assert_int_equal(progress.state, FL_RENDER_PAUSED);
+        assert_false(fl_render_wait(render, -1.0)); /* At once. */
+    }
+    fl_render_set_paused(render, false);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 9, X0, Y0, W, H, 20);
+    fl_render_destroy(render);
+}
+
+static void an_empty_render_has_nothing(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(2);
+    fl_progress progress;
+    uint64_t revision = 0;
+    float rgb[3];
+    uint8_t rgba[4];
+    assert_false(fl_render_wait(render, -1.0));
+    assert_false(fl_render_mean(render, rgb, 3, &progress));
+    assert_false(fl_render_display(render, &revision, &(fl_tonemap){0}, rgba, 4, &progress));
+    assert_int_equal(progress.width, 0);
+    assert_int_equal(progress.state, FL_RENDER_EMPTY);
+    fl_render_destroy(render);
+    fl_render_destroy(NULL);
+}
+
+/* The fake's noise is uniform on [0, 1]: variance 1/12, falling like 1/n. */
+static void noise_stops_at_the_same_sample_for_all_threads(void **state)
+{
+    (void)state;
+    uint32_t stopped_at = 0;
+    for (size_t t = 0; t < FL_COUNT_OF(thread_counts); t++) {
+        fl_render *render = kit_render(thread_counts[t]);
+        fl_render_set_limits(render, &(fl_render_limits){.noise_rmse = 0.06});
+        kit_restart(render, 4, X0, Y0, W, H);
+        assert_true(fl_render_wait(render, -1.0));
+        fl_progress progress;
+        fl_render_progress(render, &progress);
+        if (stopped_at == 0)
+            stopped_at = progress.complete_samples;
+        assert_int_equal(progress.complete_samples, stopped_at);
+        assert_true(progress.error.is_known && progress.error.rmse <= 0.06);
+        double truth = sqrt(1.0 / 12.0 / (progress.complete_samples * 63.0 / 64.0));
+        assert_true(progress.error.low <= truth && truth <= progress.error.high);
+        kit_assert_film(render, 4, X0, Y0, W, H, stopped_at);
+        /* A tighter target goes on, a looser one does not. */
+        fl_render_set_limits(render, &(fl_render_limits){.noise_rmse = 0.5});
+        assert_true(fl_render_wait(render, -1.0));
+        kit_assert_film(render, 4, X0, Y0, W, H, stopped_at);
+        fl_render_set_limits(render, &(fl_render_limits){.noise_rmse = 0.03});
+        assert_true(fl_render_wait(render, -1.0));
+        fl_render_progress(render, &progress);
+        assert_true(progress.complete_samples > 3 * stopped_at);
+        kit_assert_film(render, 4, X0, Y0, W, H, progress.complete_samples);
+        fl_render_destroy(render);
+    }
+    assert_in_range(stopped_at, 17, 40);
+}
+
+static void time_stops_with_an_even_film(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(2);
+    fl_render_set_limits(render, &(fl_render_limits){.seconds = 1e-9});
+    kit_restart(render, 3, X0, Y0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 3, X0, Y0, W, H, 1);
+    fl_render_set_limits(render, &(fl_render_limits){.seconds = 0.02});
+    assert_true(fl_render_wait(render, -1.0));
+    fl_progress progress;
+    fl_render_progress(render, &progress);
+    assert_true(progress.seconds >= 0.02);
+    kit_assert_film(render, 3, X0, Y0, W, H, progress.complete_samples);
+    fl_render_destroy(render);
+}
+
+static void the_old_picture_stays_until_rank_0_of_the_new_one(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(1); /* So that permits go to ranks in order. */
+    kit_limit(render, 3);
+    kit_restart(render, 10, X0, Y0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    fake_permit(0);
+    kit_restart(render, 11, X0, Y0, W / 2, H / 2); /* Another size. */
+    fake_await_waiting(1);
+    kit_assert_film(render, 10, X0, Y0, W, H, 3);
+    fl_progress progress;
+    fl_render_progress(render, &progress);
+    assert_int_equal(progress.generation, 2);
+    assert_int_equal(progress.complete_ranks, 0);
+    fake_permit(1); /* The picture is one cell: rank 0 is one unit. */
+    fake_await_waiting(1);
+    do
+        fl_render_progress(render, &progress);
+    while (progress.complete_ranks == 0);
+    static uint8_t rgba[4 * W * H];
+    uint64_t revision = 0;
+    assert_true(
+        fl_render_display(render, &revision, &(fl_tonemap){0}, rgba, sizeof rgba, &progress));
+    assert_int_equal(progress.generation, 2);
+    assert_int_equal(progress.width, W / 2);
+    for (uint32_t y = 0; y < H / 2; y++) /* Holes show the pixel of rank 0. */
+        for (uint32_t x = 0; x < W / 2; x++)
+            assert_memory_equal(rgba + 4 * (y * (W / 2) + x),
+                                rgba + 4 * ((y & ~7u) * (W / 2) + (x & ~7u)), 4);
+    fake_permit(UINT64_MAX);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 11, X0, Y0, W / 2, H / 2, 3);
+    fl_render_destroy(render);
+}
+
+static void each_picture_gets_its_rank_0_and_the_newest_wins(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(1); /* So that permits go to ranks in order. */
+    kit_limit(render, 2);
+    for (uint32_t round = 0; round < 10; round++) {
+        fake_permit(0);
+        uint32_t w = round % 2 ? W : W / 2; /* With and without a film to take over. */
+        kit_restart(render, 100, 0, 0, W, H);
+        fake_await_waiting(1);
+        for (uint32_t i = 0; i < 5; i++)
+            kit_restart(render, 200 + i, 0, 0, i < 4 ? W / 2 : w, H);
+        fl_progress before, after;
+        fl_render_progress(render, &before);
+        assert_int_equal(before.newest_generation, before.generation + 5);
+        assert_int_equal(before.complete_ranks, 0);
+        fake_permit(1); /* Rank 0 of seed 100: then the last restart begins, none between. */
+        do
+            fl_render_progress(render, &after);
+        while (after.generation == before.generation);
+        assert_int_equal(after.generation, before.newest_generation);
+        static float rgb[3 * W * H], sample[3];
+        assert_true(fl_render_mean(render, rgb, FL_COUNT_OF(rgb),
+                                   &after)); /* Seed 100 is what is seen now. */
+        assert_int_equal(after.generation, before.generation);
+        assert_int_equal(after.complete_ranks, 1);
+        if (fake_sample(100, 8, 8, 0, sample))
+            assert_memory_equal(rgb + 3 * (8 * W + 8), sample, sizeof sample);
+        fake_poke();
+        fake_permit(UINT64_MAX);
+        assert_true(fl_render_wait(render, -1.0));
+        kit_assert_film(render, 204, 0, 0, w, H, 2);
+    }
+    fl_render_destroy(render);
+}
+
+static void a_restart_while_paused_is_taken_at_once(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(2);
+    kit_limit(render, 2);
+    fl_render_set_paused(render, true);
+    for (uint32_t i = 0; i < 10; i++)
+        kit_restart(render, i, 0, 0, i % 3 ? W : W / 2, H);
+    fl_progress progress;
+    fl_render_progress(render, &progress);
+    assert_int_equal(progress.generation, 10);
+    assert_int_equal(progress.newest_generation, 10);
+    fl_render_set_paused(render, false);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 9, 0, 0, W / 2, H, 2);
+    fl_render_destroy(render);
+}
+
+static void too_large_a_film_is_refused_and_the_old_one_stays(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    size_t film;
+    assert_true(fl_film_bytes(W, H, &film));
+    fl_render_options options = {.thread_count = 2, .memory_limit_bytes = 4 * film};
+    fl_render *render = fl_render_create(&options, &diags);
+    assert_non_null(render);
+    kit_limit(render, 2);
+    kit_restart(render, 1, 0, 0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    fl_params params = fake_params(2, 0, 0, 4 * W, H);
+    assert_false(fl_render_restart(render, NULL, &params, &diags));
+    assert_int_equal(diags.error_count, 1);
+    assert_int_equal(diags.items[0].cause, FL_CAUSE_ENVIRONMENT);
+    assert_non_null(strstr(diags.items[0].message, "400 x 77 pixels needs "));
+    kit_assert_film(render, 1, 0, 0, W, H, 2);
+    params.crop_w = 0; /* Refused by the frame. */
+    assert_false(fl_render_restart(render, NULL, &params, &diags));
+    kit_assert_film(render, 1, 0, 0, W, H, 2);
+    for (uint32_t i = 0; i < 5; i++) { /* Two films are all it takes. */
+        kit_restart(render, 3 + i, 0, 0, W, H);
+        assert_true(fl_render_wait(render, -1.0));
+    }
+    kit_assert_film(render, 7, 0, 0, W, H, 2);
+    fl_diags_deinit(&diags);
+    fl_render_destroy(render);
+}
+
+static void a_worker_without_memory_fails_the_render_until_restart(void **state)
+{
+    (void)state;
+    fl_render *render = kit_render(3);
+    kit_limit(render, 4);
+    fake_fail_next();
+    kit_restart(render, 1, 0, 0, W, H);
+    assert_false(fl_render_wait(render, -1.0));
+    fl_progress progress;
+    fl_render_progress(render, &progress);
+    assert_int_equal(progress.state, FL_RENDER_FAILED);
+    kit_restart(render, 2, 0, 0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    kit_assert_film(render, 2, 0, 0, W, H, 4);
+    fl_render_destroy(render);
+}
+
+typedef struct listener {
+    pthread_mutex_t lock;
+    pthread_cond_t called;
+    uint32_t calls;
+} listener;
+
+static void hear(void *context)
+{
+    listener *l = context;
+    pthread_mutex_lock(&l->lock);
+    l->calls++;
+    pthread_cond_signal(&l->called);
+    pthread_mutex_unlock(&l->lock);
+}
+
+static void one_call_for_each_look_until_done(void **state)
+{
+    (void)state;
+    listener l = {.lock = PTHREAD_MUTEX_INITIALIZER, .called = PTHREAD_COND_INITIALIZER};
+    fl_diags diags = {0};
+    fl_render_options options = {.thread_count = 3, .notify = hear, .notify_context = &l};
+    fl_render *render = fl_render_create(&options, &diags);
+    assert_non_null(render);
+    kit_limit(render, 8);
+    kit_restart(render, 1, 0, 0, W, H);
+    static uint8_t rgba[4 * W * H];
+    uint64_t revision = 0;
+    fl_progress progress = {0};
+    uint32_t looks = 0;
+    while (progress.state !=
+           FL_RENDER_DONE) { /* As a viewer does: sleep until called, then look. */
+        pthread_mutex_lock(&l.lock);
+        while (l.calls <= looks)
+            pthread_cond_wait(&l.called, &l.lock);
+        assert_int_equal(l.calls, looks + 1);
+        pthread_mutex_unlock(&l.lock);
+        looks++;
+        fl_render_display(render, &revision, &(fl_tonemap){0}, rgba, sizeof rgba, &progress);
+    }
+    assert_int_equal(progress.complete_samples, 8);
+    assert_false(
+        fl_render_display(render, &revision, &(fl_tonemap){0}, rgba, sizeof rgba, &progress));
+    static float rgb[3 * W * H];
+    static uint8_t want[4 * W * H];
+    assert_true(fl_render_mean(render, rgb, FL_COUNT_OF(rgb), &progress));
+    fl_tonemap_rgba8(&(fl_tonemap){0}, rgb, W * H, want);
+    assert_memory_equal(rgba, want, sizeof want);
+    fl_tonemap brighter = {.exposure_ev = 1.5};
+    revision = 0; /* For a new exposure: the same film again. */
+    assert_true(fl_render_display(render, &revision, &brighter, rgba, sizeof rgba, &progress));
+    fl_tonemap_rgba8(&brighter, rgb, W * H, want);
+    assert_memory_equal(rgba, want, sizeof want);
+    revision = 0;
+    assert_false(fl_render_display(render, &revision, &brighter, rgba, sizeof rgba - 1, &progress));
+    assert_int_equal(progress.width, W);
+    fl_render_destroy(render);
+}
+
+static void counts_and_times_are_those_of_the_film(void **state)
+{
+    (void)state;
+    uint64_t invalid = 0;
+    for (uint32_t i = 0; i < W * H * 6; i++) {
+        float rgb[3];
+        invalid += !fake_sample(5, i % W, i / W % H, i / (W * H), rgb);
+    }
+    assert_true(invalid > 0);
+    fl_render *render = kit_render(3);
+    kit_limit(render, 6);
+    kit_restart(render, 5, 0, 0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    fl_progress p;
+    fl_render_progress(render, &p);
+    assert_int_equal(p.counts.invalid_samples, invalid);
+    assert_int_equal(p.complete_ranks, 64);
+    assert_true(p.first_picture_seconds > 0.0 && p.first_picture_seconds <= p.first_sample_seconds);
+    assert_true(p.seconds > 0.0 && p.cpu_seconds > 0.0);
+    fl_progress later;
+    fl_render_progress(render, &later);
+    assert_true(later.seconds == p.seconds); /* The clock stands. */
+    fl_render_destroy(render);
+}
+
+static void quitting_amid_the_work_is_clean(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < 30; i++) {
+        fl_render *render = kit_render(3);
+        kit_restart(render, i, 0, 0, W, H);
+        if (i % 3 > 0)
+            kit_restart(render, i, 0, 0, W / 2, H);
+        if (i % 3 > 1)
+            kit_restart(render, i, 0, 0, W, H);
+        fl_render_destroy(render);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
+        cmocka_unit_test(a_raised_cap_goes_on_and_a_lowered_one_keeps),
+        cmocka_unit_test(a_lowered_cap_amid_the_work_ends_even),
+        cmocka_unit_test(pauses_leave_the_bytes_alone),
+        cmocka_unit_test(an_empty_render_has_nothing),
+        cmocka_unit_test(noise_stops_at_the_same_sample_for_all_threads),
+        cmocka_unit_test(time_stops_with_an_even_film),
+        cmocka_unit_test(the_old_picture_stays_until_rank_0_of_the_new_one),
+        cmocka_unit_test(each_picture_gets_its_rank_0_and_the_newest_wins),
+        cmocka_unit_test(a_restart_while_paused_is_taken_at_once),
+        cmocka_unit_test(too_large_a_film_is_refused_and_the_old_one_stays),
+        cmocka_unit_test(a_worker_without_memory_fails_the_render_until_restart),
+        cmocka_unit_test(one_call_for_each_look_until_done),
+        cmocka_unit_test(counts_and_times_are_those_of_the_film),
+        cmocka_unit_test(quitting_amid_the_work_is_clean),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
