@@ -22,6 +22,14 @@ static bool is_black(const float color[3])
     return color[0] == 0.0f && color[1] == 0.0f && color[2] == 0.0f;
 }
 
+/* Triangles and meshes bring their own texture coordinates, or have none. */
+static bool has_coordinates(const fl_compiler *c, const fl_object *object)
+{
+    if (object->kind == FL_OBJECT_TRIANGLE)
+        return false;
+    return object->kind != FL_OBJECT_MESH || c->scene->meshes[object->as.mesh.mesh].mesh->uv_count > 0;
+}
+
 /* How an object reads its picture; FL_NONE in *out_image: it has none. */
 static fl_texture texture_of(const fl_compiler *c, const fl_object *object, uint32_t *out_image)
 {
@@ -32,6 +40,10 @@ static fl_texture texture_of(const fl_compiler *c, const fl_object *object, uint
         image = object->as.revolution.image;
     if (image != FL_NONE && !c->scene->images[image].image)
         image = FL_NONE;
+    if (image != FL_NONE && !has_coordinates(c, object)) {
+        fl_warning(c->diags, object->loc, "this object has no texture coordinates, so its material's texture is not used");
+        image = FL_NONE;
+    }
     *out_image = image;
     if (image == FL_NONE)
         return (fl_texture){0};

@@ -201,6 +201,22 @@ void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_es
     };
 }
 
+double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t y,
+                               uint32_t samples)
+{
+    uint32_t k = floor_log2(samples);
+    if (samples == 0 || k < LEVEL_FIRST_KNOWN)
+        return 0.0;
+    uint32_t sx = x / SQUARE_SIDE, sy = y / SQUARE_SIDE;
+    FL_ASSERT(sx < estimate->squares_x && sy < estimate->squares_y);
+    fl_rect r = square_rect(estimate, sx, sy);
+    double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), p = exponent_at(estimate, k);
+    size_t count = (size_t)estimate->squares_x * estimate->squares_y;
+    double sum = estimate->sums[k * count + (size_t)sy * estimate->squares_x + sx];
+    double since = fl_d_log2((double)samples) - (double)k;
+    return sqrt(sum / (3.0 * pixels)) * fl_d_exp2(0.5 - p - p * since);
+}
+
 uint32_t fl_estimate_next_stop(const fl_estimate *estimate, uint32_t samples, double target_rmse)
 {
     uint32_t k = floor_log2(samples);

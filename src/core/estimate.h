@@ -53,6 +53,11 @@ void fl_estimate_capture(fl_estimate *estimate, const fl_film *film, const fl_re
 /** The estimate when every pixel has at least `samples` samples. */
 void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_estimate *out_error);
 
+/** The error of the square of 16 x 16 pixels around (x, y) as far as it is known when every pixel
+ * has at least `samples`: rmse of that square alone, noisier than the whole. Below 4 samples 0. */
+double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t y,
+                               uint32_t samples);
+
 /** Let the render go on to this many samples, then ask again: the least n up to the next power of
  * two whose error is within target_rmse, else that power; n <= samples means the target is reached.
  */

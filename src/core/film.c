@@ -160,6 +160,15 @@ void fl_film_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count, fl
         pixel_mean(film, at + i, out_rgb + (size_t)3 * i);
 }
 
+void fl_film_samples_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count,
+                         uint32_t *out_samples)
+{
+    FL_ASSERT(y < film->height && x + count <= film->width);
+    for (uint32_t i = 0; i < count; i++)
+        out_samples[i] =
+            film->row_epoch[y] == film->epoch ? film->samples[(size_t)y * film->width + x + i] : 0;
+}
+
 void fl_film_mean(const fl_film *film, float *out_rgb)
 {
     for (uint32_t y = 0; y < film->height; y++)

@@ -32,6 +32,10 @@ void fl_film_add(fl_film *film, const fl_unit *unit, const fl_unit_result *resul
  * are 0. */
 void fl_film_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count, float *out_rgb);
 
+/** How many samples `count` pixels of row `y` from `x` on have. */
+void fl_film_samples_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count,
+                         uint32_t *out_samples);
+
 /** Mean of the whole film, top row first, 3 * width * height floats. */
 void fl_film_mean(const fl_film *film, float *out_rgb);
 

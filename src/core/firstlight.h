@@ -8,6 +8,7 @@
 #ifndef FL_FIRSTLIGHT_H
 #define FL_FIRSTLIGHT_H
 
+#include "core/aov.h"
 #include "core/arena.h"
 #include "core/compile.h"
 #include "core/cpu.h"
@@ -17,6 +18,7 @@
 #include "core/frame.h"
 #include "core/grammar.h"
 #include "core/image.h"
+#include "core/math64.h"
 #include "core/mesh.h"
 #include "core/number.h"
 #include "core/params.h"

@@ -189,8 +189,7 @@ static void put_children(printer *p, const fl_node *block);
 /* A material of the MIT courses, said in our keys. */
 static void put_meaning(printer *p, const fl_node *node, const fl_material *material)
 {
-    const fl_node *texture = fl_node_key(node, FL_KEY_TEXTURE),
-                  *bump = fl_node_key(node, FL_KEY_BUMP);
+    const fl_node *bump = fl_node_key(node, FL_KEY_BUMP);
     put_color(p, "diffuseColor", material->diffuse);
     put_color_if(p, "specularColor", material->specular, 0.0);
     if (material->shininess != 0.0)
@@ -199,8 +198,11 @@ static void put_meaning(printer *p, const fl_node *node, const fl_material *mate
     put_color_if(p, "refract", material->refract, 0.0);
     if (material->refraction_index != 1.0)
         put_key(p, "refractionIndex", &material->refraction_index, 1);
-    if (texture)
-        put_key_node(p, node, texture, false);
+    if (material->image != FL_NONE) { /* of the node, or of the material it stands in for */
+        begin_line(p, false);
+        put_text(p, "texture ");
+        put_text(p, p->scene->images[material->image].path); /* as written: no files were looked for */
+    }
     if (bump) {
         begin_line(p, false);
         put_text(p, "# bump ");

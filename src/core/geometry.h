@@ -25,10 +25,10 @@
 
 /* Boxes are widened by FL_BOX_PAD * (largest coordinate of the boxes) and, as a ray walks, by FL_ORIGIN_PAD *
  * (largest coordinate of its origin). A point that the triangle test accepts is off its triangle by at most 7
- * roundings of that size (subtraction and shear), the slab test and the stored planes add 5, t and its products 2:
- * 14 in all, below these 16. So a cull skips only what the triangle test rejects (decision 3). */
-#define FL_BOX_PAD    0x1p-20f
-#define FL_ORIGIN_PAD 0x1p-20f
+ * roundings of that size (subtraction and shear), the slab test and the stored planes add 5, t, its weights and
+ * products 11: 23 in all, below these 32. So a cull skips only what the triangle test rejects (decision 3). */
+#define FL_BOX_PAD    0x1p-19f
+#define FL_ORIGIN_PAD 0x1p-19f
 
 /** Which structure finds candidates. All give the same hits. */
 typedef enum fl_accel { FL_ACCEL_BVH, FL_ACCEL_OCTREE, FL_ACCEL_NONE } fl_accel;

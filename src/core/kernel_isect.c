@@ -9,13 +9,33 @@
 
 /* --- Objects with a transform, and meshes ---------------------------------------------------- */
 
+static void walk_mesh_nearest(packet *p, const mesh_target *target)
+{
+    packet_walk(p, target, false);
+}
+
+static void walk_mesh_any(packet *p, const mesh_target *target)
+{
+    packet_walk(p, target, true);
+}
+
 /* Rays [first, first + count) of the chunk against a mesh in its own space. */
 FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint32_t first, uint32_t count,
                                   const fl_instance *instance, const bool is_any)
 {
-    _Alignas(64) float local[6][CHUNK_RAYS], boxes[9][CHUNK_RAYS];
-    const float *o[3] = {c->o[0], c->o[1], c->o[2]}, *d[3] = {c->d[0], c->d[1], c->d[2]};
-    uint64_t lanes = 0;
+    _Alignas(64) float local[6][CHUNK_RAYS];
+    packet p;
+    p.lanes = p.z_is_1 = p.z_is_2 = p.down[0] = p.down[1] = p.down[2] = 0;
+    p.has_source = false;
+    p.t = c->t;
+    p.object = c->object;
+    p.prim = c->prim;
+    p.source_object = c->source_object;
+    p.source_prim = c->source_prim;
+    for (int a = 0; a < 3; a++) {
+        p.o[a] = instance->is_identity ? c->o[a] : local[a];
+        p.d[a] = instance->is_identity ? c->d[a] : local[3 + a];
+    }
     for (uint32_t i = first; i < first + count; i += FL_W) {
         fl_wm alive = chunk_alive(c, i);
         if (!fl_wm_any(alive))
@@ -32,22 +52,19 @@ FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint32_t first, uint32
         slabs s = slabs_of(&b, FL_ORIGIN_PAD);
         fl_wm meets =
             slabs_meet(&s, instance->box.lo, instance->box.hi, fl_wf_load(c->t + i), &near);
-        lanes |= (uint64_t)fl_wm_bits(meets & alive) << i;
-        for (int a = 0; a < 3; a++) {
-            fl_wf_store(&boxes[a][i], s.enter_o[a]);
-            fl_wf_store(&boxes[3 + a][i], s.leave_o[a]);
-            fl_wf_store(&boxes[6 + a][i], s.inverse[a]);
-        }
+        if (fl_wm_any(meets & alive))
+            packet_put(&p, i, &b, &s, meets & alive);
     }
-    if (!instance->is_identity)
-        for (int a = 0; a < 3; a++) {
-            o[a] = local[a];
-            d[a] = local[3 + a];
-        }
+    if (!p.lanes)
+        return;
     mesh_target target = {&j->geometry->meshes[instance->index], instance->object,
                           &j->context->counts};
-    if (lanes)
-        chunk_meet_mesh(c, lanes, o, d, boxes, &target, is_any);
+    if (!target.mesh->bvh || __builtin_popcountll(p.lanes) < PACKET_RAYS_MIN)
+        packet_walk_alone(&p, &target, is_any);
+    else if (is_any)
+        walk_mesh_any(&p, &target);
+    else
+        walk_mesh_nearest(&p, &target);
 }
 
 FL_INLINE uint32_t lane_count(fl_wm m)

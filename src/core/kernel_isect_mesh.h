@@ -4,27 +4,35 @@
  *
  * The triangle test is watertight [Woop, Benthin, Wald 2013]: corners are translated to the ray's
  * origin and sheared so that the ray is an axis; signs of three edge functions decide. In float,
- * plain multiply and subtract never gets a sign wrong, it can only yield 0. So floats, eight
- * triangles at a time, find the candidates, a 0 counting as either sign, and doubles decide each:
- * products of floats are exact in double, hence so are the signs, two triangles agree about their
- * common edge, and t, a mean of the corners' depths with weights of one sign, lies within the
- * triangle's own depth however thin it is. That is what lets boxes cull (FL_BOX_PAD).
+ * plain multiply and subtract never gets a sign wrong, it can only yield 0. So floats decide where
+ * no edge is 0, and doubles where one is: products of floats are exact in double, hence so are the
+ * signs, and two triangles agree about their common edge. Either way t, a mean of the corners'
+ * depths with weights of one sign, lies within the triangle's own depth however thin it is. That is
+ * what lets boxes cull (FL_BOX_PAD).
+ *
+ * The test is written once for FL_W lanes, which are eight triangles of one ray or eight rays of
+ * one triangle: the same bits.
  */
 #ifndef FL_KERNEL_ISECT_MESH_H
 #define FL_KERNEL_ISECT_MESH_H
 
 #include "core/kernel_isect.h"
 
+/** What the triangle test needs of one ray, and what it found. */
+typedef struct needle {
+    float o[3], d_z;
+    float shear_x, shear_y, inverse_z; /* Along kx and ky for a step along kz; 1 / d there. */
+    int kx, ky, kz;                    /* kz: the axis in which d is largest. */
+    float t;                           /* Nearest so far; for any-hit -1 once blocked. */
+    uint32_t object, prim;
+    uint32_t source_object, source_prim;
+} needle;
+
 /** A single ray in the space of a mesh. */
 typedef struct ray {
     float enter_o[3], leave_o[3], inverse[3]; /* As in slabs. */
     int down[3];                              /* 1 where the ray descends. */
-    float t;                                  /* Nearest so far; for any-hit -1 once blocked. */
-    float o[3];
-    float shear_x, shear_y, d_z; /* Along kx and ky for a step along kz, and d there. */
-    int kx, ky, kz;              /* kz: the axis in which d is largest. */
-    uint32_t object, prim;
-    uint32_t source_object, source_prim;
+    needle n;
 } ray;
 
 /** What all rays that meet a mesh have in common. */
@@ -34,43 +42,66 @@ typedef struct mesh_target {
     fl_isect_counts *counts;
 } mesh_target;
 
-static inline void ray_init(ray *r, const float o[3], const float d[3])
-{
-    float x = fabsf(d[0]), y = fabsf(d[1]), z = fabsf(d[2]);
-    r->kz = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
-    r->kx = r->kz == 2 ? 0 : r->kz + 1;
-    r->ky = r->kx == 2 ? 0 : r->kx + 1;
-    r->d_z = d[r->kz];
-    r->shear_x = d[r->kx] / r->d_z;
-    r->shear_y = d[r->ky] / r->d_z;
-    for (int a = 0; a < 3; a++) {
-        r->o[a] = o[a];
-        r->down[a] = r->inverse[a] < 0.0f;
-    }
-}
-
 /* --- Triangles ------------------------------------------------------------------------------- */
 
-/* Decide one candidate by its sheared corners. */
-static inline bool triangle_decide(const ray *r, const float x[3], const float y[3],
-                                   const float z[3], float *out_t)
+/** Sheared corners of FL_W pairs of ray and triangle. */
+typedef struct corners {
+    fl_wf x[3], y[3], z[3];
+} corners;
+
+FL_INLINE fl_wf least_of(fl_wf a, fl_wf b, fl_wf c)
 {
-    double u = (double)x[2] * (double)y[1] - (double)y[2] * (double)x[1];
-    double v = (double)x[0] * (double)y[2] - (double)y[0] * (double)x[2];
-    double w = (double)x[1] * (double)y[0] - (double)y[1] * (double)x[0];
+    return fl_wf_min(fl_wf_min(a, b), c);
+}
+
+FL_INLINE fl_wf most_of(fl_wf a, fl_wf b, fl_wf c)
+{
+    return fl_wf_max(fl_wf_max(a, b), c);
+}
+
+/* Lanes that are hit for certain, with t; lanes for doubles to decide in *out_doubt: where an edge
+ * is 0, or the area of a size that squares badly. NaN corners are neither. */
+FL_INLINE fl_wm corners_meet(const corners *c, fl_wf inverse_z, fl_wf *out_t, fl_wm *out_doubt)
+{
+    fl_wf u = c->x[2] * c->y[1] - c->y[2] * c->x[1];
+    fl_wf v = c->x[0] * c->y[2] - c->y[0] * c->x[2];
+    fl_wf w = c->x[1] * c->y[0] - c->y[1] * c->x[0];
+    fl_wf least = least_of(u, v, w), most = most_of(u, v, w);
+    fl_wm maybe = (least >= 0.0f) | (most <= 0.0f);
+    *out_doubt = fl_wi_set(0);
+    *out_t = fl_wf_set(-1.0f);
+    if (!fl_wm_any(maybe))
+        return maybe;
+    fl_wf area = u + v + w, size = fl_wf_abs(area), share = 1.0f / area;
+    fl_wm sure = ((least > 0.0f) | (most < 0.0f)) & (size > 1e-25f) & (size < 1e25f);
+    fl_wf depth = u * share * c->z[0] + v * share * c->z[1] + w * share * c->z[2];
+    *out_t = depth * inverse_z;
+    *out_doubt = maybe & ~sure;
+    return sure;
+}
+
+/* Decide one pair in doubles. */
+static __attribute__((noinline)) bool corners_decide(const corners *c, int i, float d_z, float *out_t)
+{
+    double x[3], y[3], z[3];
+    for (int k = 0; k < 3; k++) {
+        x[k] = (double)c->x[k][i];
+        y[k] = (double)c->y[k][i];
+        z[k] = (double)c->z[k][i];
+    }
+    double u = x[2] * y[1] - y[2] * x[1], v = x[0] * y[2] - y[0] * x[2],
+           w = x[1] * y[0] - y[1] * x[0];
     if ((u < 0.0 || v < 0.0 || w < 0.0) && (u > 0.0 || v > 0.0 || w > 0.0))
         return false;
     double area = u + v + w;
     if (area == 0.0)
         return false;
-    double depth =
-        (u * (double)z[0] + v * (double)z[1] + w * (double)z[2]) / (area * (double)r->d_z);
-    *out_t = (float)depth;
+    *out_t = (float)((u * z[0] + v * z[1] + w * z[2]) / (area * (double)d_z));
     return *out_t > 0.0f;
 }
 
-FL_INLINE void ray_accept(ray *r, const mesh_target *target, float t, uint32_t face,
-                          const bool is_any)
+FL_INLINE void needle_accept(needle *r, const mesh_target *target, float t, uint32_t face,
+                             const bool is_any)
 {
     if (!(t <= r->t))
         return;
@@ -93,46 +124,31 @@ FL_INLINE void ray_accept(ray *r, const mesh_target *target, float t, uint32_t f
     }
 }
 
-/* FL_W corners of the pack from place `at`, translated and sheared. */
-typedef struct corners {
-    fl_wf x[3], y[3], z[3];
-} corners;
-
-FL_INLINE corners shear_corners(const ray *r, const fl_tri_pack *pack, int at)
-{
-    corners c;
-    for (int k = 0; k < 3; k++) {
-        c.z[k] = fl_wf_load(&pack->corner[k][r->kz][at]) - r->o[r->kz];
-        c.x[k] = fl_wf_load(&pack->corner[k][r->kx][at]) - r->o[r->kx] - r->shear_x * c.z[k];
-        c.y[k] = fl_wf_load(&pack->corner[k][r->ky][at]) - r->o[r->ky] - r->shear_y * c.z[k];
-    }
-    return c;
-}
-
-/* Lanes that may be hit. NaN corners never are. */
-FL_INLINE uint32_t candidates(const corners *c)
-{
-    fl_wf u = c->x[2] * c->y[1] - c->y[2] * c->x[1];
-    fl_wf v = c->x[0] * c->y[2] - c->y[0] * c->x[2];
-    fl_wf w = c->x[1] * c->y[0] - c->y[1] * c->x[0];
-    fl_wm some_negative = (u < 0.0f) | (v < 0.0f) | (w < 0.0f);
-    fl_wm some_positive = (u > 0.0f) | (v > 0.0f) | (w > 0.0f);
-    fl_wm is_number = w == w;
-    return fl_wm_bits(is_number & ~(some_negative & some_positive));
-}
-
-FL_INLINE void ray_meet_pack(ray *r, const mesh_target *target, const fl_tri_pack *pack,
-                             const bool is_any)
+/** One ray against the eight triangles of a pack. */
+FL_INLINE void needle_meet_pack(needle *r, const mesh_target *target, const fl_tri_pack *pack,
+                                const bool is_any)
 {
     for (int at = 0; at < 8; at += FL_W) {
-        corners c = shear_corners(r, pack, at);
-        for (uint32_t lanes = candidates(&c); lanes; lanes &= lanes - 1) {
+        corners c;
+        fl_wf t;
+        fl_wm doubt;
+        for (int k = 0; k < 3; k++) {
+            c.z[k] = fl_wf_load(&pack->corner[k][r->kz][at]) - r->o[r->kz];
+            c.x[k] = fl_wf_load(&pack->corner[k][r->kx][at]) - r->o[r->kx] - r->shear_x * c.z[k];
+            c.y[k] = fl_wf_load(&pack->corner[k][r->ky][at]) - r->o[r->ky] - r->shear_y * c.z[k];
+        }
+        fl_wm sure = corners_meet(&c, fl_wf_set(r->inverse_z), &t, &doubt);
+        uint32_t lanes = fl_wm_bits(sure & (t > 0.0f) & (t <= r->t));
+        for (; lanes; lanes &= lanes - 1) {
             int i = __builtin_ctz(lanes);
-            float x[3] = {c.x[0][i], c.x[1][i], c.x[2][i]};
-            float y[3] = {c.y[0][i], c.y[1][i], c.y[2][i]};
-            float z[3] = {c.z[0][i], c.z[1][i], c.z[2][i]}, t;
-            if (triangle_decide(r, x, y, z, &t))
-                ray_accept(r, target, t, pack->face[at + i], is_any);
+            needle_accept(r, target, t[i], pack->face[at + i], is_any);
+        }
+        for (lanes = fl_wm_bits(doubt); lanes; lanes &= lanes - 1) {
+            int i = __builtin_ctz(lanes);
+            const corners kept = c; /* Which leaves c itself in registers. */
+            float exact;
+            if (corners_decide(&kept, i, r->d_z, &exact))
+                needle_accept(r, target, exact, pack->face[at + i], is_any);
         }
     }
 }
@@ -149,7 +165,7 @@ FL_INLINE uint32_t ray_meet_node(const ray *r, const fl_bvh_node *node, float ou
 {
     uint32_t bits = 0;
     for (int at = 0; at < 8; at += FL_W) {
-        fl_wf near = fl_wf_set(0.0f), far = fl_wf_set(r->t);
+        fl_wf near = fl_wf_set(0.0f), far = fl_wf_set(r->n.t);
         for (int a = 0; a < 3; a++) {
             const float *enter = node->plane[2 * a + r->down[a]];
             const float *leave = node->plane[2 * a + 1 - r->down[a]];
@@ -186,8 +202,8 @@ static inline void ray_walk_bvh(ray *r, const mesh_target *target, const bool is
     for (;;) {
         if (child & FL_BVH_LEAF) {
             target->counts->primitive_tests += FL_BVH_LEAF_COUNT(child);
-            ray_meet_pack(r, target, &packs[FL_BVH_LEAF_INDEX(child)], is_any);
-            if (is_any && r->t < 0.0f)
+            needle_meet_pack(&r->n, target, &packs[FL_BVH_LEAF_INDEX(child)], is_any);
+            if (is_any && r->n.t < 0.0f)
                 return;
         } else {
             _Alignas(32) float near[8];
@@ -204,7 +220,7 @@ static inline void ray_walk_bvh(ray *r, const mesh_target *target, const bool is
             if (height == 0)
                 return;
             child = stack[--height].child;
-        } while (stack[height].near > r->t);
+        } while (stack[height].near > r->n.t);
     }
 }
 
@@ -241,7 +257,7 @@ static inline uint32_t push_octants(const ray *r, const fl_octree *tree, const c
         if (node->child[octant] == FL_NONE)
             continue;
         cell_visit c = {0.0f, node->child[octant], {0}, {half[0], half[1], half[2]}};
-        float leave = r->t;
+        float leave = r->n.t;
         for (int a = 0; a < 3; a++) {
             uint32_t h = k >> a & 1u;
             c.near = near[a][h] > c.near ? near[a][h] : c.near;
@@ -264,7 +280,7 @@ static void ray_walk_octree(ray *r, const mesh_target *target, const bool is_any
                             {tree->size[0], tree->size[1], tree->size[2]}};
     for (uint32_t height = 1; height > 0;) {
         cell_visit cell = stack[--height];
-        if (cell.near > r->t)
+        if (cell.near > r->n.t)
             continue;
         if (!(cell.child & FL_BVH_LEAF)) {
             target->counts->node_visits++;
@@ -274,8 +290,8 @@ static void ray_walk_octree(ray *r, const mesh_target *target, const bool is_any
         const fl_octree_leaf *leaf = &tree->leaves[cell.child & ~FL_BVH_LEAF];
         target->counts->primitive_tests += leaf->count;
         for (uint32_t k = 0; k < (leaf->count + 7) / 8; k++)
-            ray_meet_pack(r, target, &target->mesh->packs[leaf->first_pack + k], is_any);
-        if (is_any && r->t < 0.0f)
+            needle_meet_pack(&r->n, target, &target->mesh->packs[leaf->first_pack + k], is_any);
+        if (is_any && r->n.t < 0.0f)
             return;
     }
 }
@@ -286,8 +302,8 @@ static void ray_walk_all(ray *r, const mesh_target *target, const bool is_any)
 {
     const fl_tri_mesh *mesh = target->mesh;
     for (uint32_t k = 0; k < mesh->pack_count; k++) {
-        ray_meet_pack(r, target, &mesh->packs[k], is_any);
-        if (is_any && r->t < 0.0f)
+        needle_meet_pack(&r->n, target, &mesh->packs[k], is_any);
+        if (is_any && r->n.t < 0.0f)
             break;
     }
     target->counts->primitive_tests += mesh->face_count;

@@ -236,6 +236,18 @@ fl_scene *fl_build_scene(const fl_tree *tree, const char *text, size_t text_byte
     return NULL;
 }
 
+/* Whether there is anything but white space and comments. */
+static bool says_something(const char *text, size_t text_bytes)
+{
+    fl_lexer lexer;
+    fl_token token;
+    fl_lexer_init(&lexer, text, text_bytes);
+    do
+        token = fl_lexer_next(&lexer);
+    while (token.kind == FL_TOKEN_COMMENT);
+    return token.kind != FL_TOKEN_END;
+}
+
 /* With the text set for quoting, and the dialect known. */
 static fl_scene *parse_text(const char *text, size_t text_bytes, const char *name,
                             const fl_parse_options *options, const fl_files *files, fl_arena *arena,
@@ -243,6 +255,11 @@ static fl_scene *parse_text(const char *text, size_t text_bytes, const char *nam
 {
     if (!fl_lex_check(text, text_bytes, name, options->is_lenient, diags))
         return NULL;
+    if (!says_something(text, text_bytes)) {
+        fl_error(diags, (fl_loc){.file = name},
+                 "the scene is empty; expected PerspectiveCamera, Lights, Materials and Group");
+        return NULL;
+    }
     fl_dialect dialect = options->dialect;
     const char *reason = "it was named";
     if (!options->has_dialect)

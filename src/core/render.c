@@ -365,3 +365,59 @@ bool fl_render_mean(fl_render *render, float *out_rgb, size_t capacity_floats,
             return true;
     }
 }
+
+/* The lock is held. */
+static void copy_samples(const fl_job *job, float *out_values)
+{
+    for (uint32_t y = 0; y < job->height; y++)
+        for (uint32_t x = 0; x < job->width; x++) {
+            uint32_t samples;
+            fl_film_samples_row(job->film, x, y, 1, &samples);
+            *out_values++ = (float)samples;
+        }
+}
+
+/* The lock is held. The error is that of squares: each is asked for once. */
+static void copy_error(const fl_job *job, float *out_values)
+{
+    enum { SQUARE = 16 };
+    uint32_t complete = fl_schedule_complete_samples(job->schedule);
+    for (uint32_t y = 0; y < job->height; y++)
+        for (uint32_t x = 0; x < job->width; x++, out_values++) {
+            if (y % SQUARE != 0)
+                *out_values = *(out_values - job->width);
+            else if (x % SQUARE != 0)
+                *out_values = *(out_values - 1);
+            else
+                *out_values = (float)fl_estimate_square_rmse(job->estimate, x, y, complete);
+        }
+}
+
+bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
+                        size_t capacity_floats, fl_progress *out_progress)
+{
+    pthread_mutex_lock(&render->lock);
+    fill_progress(render, render->shown, out_progress);
+    size_t pixels = (size_t)out_progress->width * out_progress->height;
+    bool has_room = pixels > 0 && pixels <= capacity_floats;
+    if (has_room && map == FL_RENDER_SAMPLES)
+        copy_samples(render->shown, out_values);
+    else if (has_room)
+        copy_error(render->shown, out_values);
+    pthread_mutex_unlock(&render->lock);
+    return has_room;
+}
+
+bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3],
+                     uint32_t *out_samples)
+{
+    pthread_mutex_lock(&render->lock);
+    const fl_job *job = render->shown;
+    bool is_there = job && x < job->width && y < job->height;
+    if (is_there) {
+        fl_film_row(job->film, x, y, 1, out_rgb);
+        fl_film_samples_row(job->film, x, y, 1, out_samples);
+    }
+    pthread_mutex_unlock(&render->lock);
+    return is_there;
+}

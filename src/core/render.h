@@ -110,4 +110,20 @@ bool fl_render_display(fl_render *render, uint64_t *revision, const fl_tonemap *
 bool fl_render_mean(fl_render *render, float *out_rgb, size_t capacity_floats,
                     fl_progress *out_progress);
 
+/** What is known about each pixel's value. */
+typedef enum fl_render_map {
+    FL_RENDER_SAMPLES, /**< Samples so far. */
+    FL_RENDER_ERROR    /**< Estimated rmse of the 16 x 16 square around; 0 below 4 samples. */
+} fl_render_map;
+
+/** Copy a map of the picture to show, one float a pixel, top row first; `capacity_floats` must be at
+ * least width * height. False: no picture yet, or too small. Any thread. */
+bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
+                        size_t capacity_floats, fl_progress *out_progress);
+
+/** Mean of one pixel of the picture to show, counted in the rendered part. False: none there. Any
+ * thread. */
+bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3],
+                     uint32_t *out_samples);
+
 #endif

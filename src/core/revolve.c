@@ -43,7 +43,8 @@ static bool measure(fl_revolve *r, const fl_profile *profile, fl_diags *diags)
     }
     double reach = fl_max(radius, fl_max(fabs(lo), fabs(hi)));
     if (reach > MAX_SIZE)
-        return fl_error(diags, profile->loc, "coordinates of a profile are at most %g, found %g", MAX_SIZE, reach);
+        return fl_error(diags, profile->loc, "coordinates of a profile are at most %g, found %g",
+                        MAX_SIZE, reach);
     double size = fl_max(radius, hi - lo);
     if (!(size >= 1.0 / MAX_SIZE && size >= 1e-100 * reach))
         return fl_error(diags, profile->loc, "the profile is too small: its size is %g", size);
@@ -99,14 +100,16 @@ fl_revolve *fl_revolve_build(fl_arena *arena, const fl_profile *profile, fl_diag
         return NULL;
     fl_arena scratch = {0};
     size_t count = (size_t)profile->segment_count * (profile->degree + 1);
-    double *x = fl_arena_alloc(&scratch, count, sizeof *x), *y = fl_arena_alloc(&scratch, count, sizeof *y);
+    double *x = fl_arena_alloc(&scratch, count, sizeof *x),
+           *y = fl_arena_alloc(&scratch, count, sizeof *y);
     double *y_low = fl_arena_alloc(&scratch, count, sizeof *y_low);
     fl_revolve *r = fl_arena_alloc(arena, 1, sizeof *r);
     bool ok = x && y && y_low && r;
     if (!ok)
         fl_out_of_memory(diags, "a revolution surface");
     for (size_t i = 0; ok && i < count; i++) {
-        double height = profile->points[i].y * shape.unit, high = height - shape.y_center, back = high + shape.y_center;
+        double height = profile->points[i].y * shape.unit, high = height - shape.y_center,
+               back = high + shape.y_center;
         x[i] = profile->points[i].x * shape.unit;
         y[i] = high;
         y_low[i] = (height - back) + (shape.y_center - (back - high));
@@ -151,8 +154,9 @@ uint32_t fl_revolve_piece_count(const fl_revolve *revolve)
     return revolve->piece_count;
 }
 
-bool fl_revolve_nearest(const fl_revolve *revolve, const double o[3], const double d[3], double u_min,
-                        double u_max, fl_revolve_solver solver, fl_revolve_hit *out_hit)
+bool fl_revolve_nearest(const fl_revolve *revolve, const double o[3], const double d[3],
+                        double u_min, double u_max, fl_revolve_solver solver,
+                        fl_revolve_hit *out_hit)
 {
     if (solver == FL_REVOLVE_NEWTON)
         return fl_revolve_newton(revolve, o, d, u_min, u_max, out_hit);
@@ -178,15 +182,18 @@ static uint32_t newton8(const fl_revolve *revolve, const fl_revolve_packet *rays
 {
     uint32_t hits = 0;
     for (uint32_t i = 0; i < FL_REVOLVE_PACKET; i++) {
-        double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]}, d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
-        if ((mask >> i & 1u) && fl_revolve_newton(revolve, o, d, rays->u_min[i], rays->u_max[i], &out_hits[i]))
+        double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]},
+               d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
+        if ((mask >> i & 1u) &&
+            fl_revolve_newton(revolve, o, d, rays->u_min[i], rays->u_max[i], &out_hits[i]))
             hits |= 1u << i;
     }
     return hits;
 }
 
-uint32_t fl_revolve_nearest8(const fl_revolve *revolve, const fl_revolve_packet *rays, uint32_t mask,
-                             fl_revolve_solver solver, fl_revolve_hit out_hits[FL_REVOLVE_PACKET])
+uint32_t fl_revolve_nearest8(const fl_revolve *revolve, const fl_revolve_packet *rays,
+                             uint32_t mask, fl_revolve_solver solver,
+                             fl_revolve_hit out_hits[FL_REVOLVE_PACKET])
 {
     if (solver == FL_REVOLVE_NEWTON)
         return newton8(revolve, rays, mask, out_hits);
@@ -202,9 +209,10 @@ uint32_t fl_revolve_any8(const fl_revolve *revolve, const fl_revolve_packet *ray
     return revolve->ops->any8(revolve, rays, mask);
 }
 
-/* Direction of the curve in its own sense at `t`, from the first derivative that is not lost in rounding.
- * Cusps are ends of pieces: near the far end, derivatives of even order point back. */
-static void tangent(const double *cx, const double *cy, uint32_t n, double t, double *out_x, double *out_y)
+/* Direction of the curve in its own sense at `t`, from the first derivative that is not lost in
+ * rounding. Cusps are ends of pieces: near the far end, derivatives of even order point back. */
+static void tangent(const double *cx, const double *cy, uint32_t n, double t, double *out_x,
+                    double *out_y)
 {
     double dx[FL_REVOLVE_MAX_DEGREE + 1], dy[FL_REVOLVE_MAX_DEGREE + 1], size = 0.0;
     for (uint32_t k = 0; k <= n; k++) {
@@ -218,7 +226,8 @@ static void tangent(const double *cx, const double *cy, uint32_t n, double t, do
             dx[k] = (double)(k + 1) * dx[k + 1];
             dy[k] = (double)(k + 1) * dy[k + 1];
         }
-        double x = fl_revolve_poly(dx, rest, t), y = fl_revolve_poly(dy, rest, t), length = sqrt(x * x + y * y);
+        double x = fl_revolve_poly(dx, rest, t), y = fl_revolve_poly(dy, rest, t),
+               length = sqrt(x * x + y * y);
         if (length > 1e-9 * size) {
             double sign = t > 0.5 && order % 2 == 0 ? -1.0 : 1.0;
             *out_x = sign * x / length;
@@ -235,7 +244,8 @@ void fl_revolve_resolve(const fl_revolve *revolve, const double o[3], const doub
 {
     const double *piece = fl_revolve_piece(revolve, hit->sheet);
     uint32_t n = revolve->degree;
-    double x = fl_revolve_poly(piece, n, hit->local), y = fl_revolve_poly(piece + n + 1, n, hit->local);
+    double x = fl_revolve_poly(piece, n, hit->local),
+           y = fl_revolve_poly(piece + n + 1, n, hit->local);
     double tx, ty, px = o[0] + hit->u * d[0], pz = o[2] + hit->u * d[2];
     tangent(piece, piece + n + 1, n, hit->local, &tx, &ty);
     x = fl_max(x, 0.0);
@@ -243,7 +253,8 @@ void fl_revolve_resolve(const fl_revolve *revolve, const double o[3], const doub
     if (!(fl_v3_dot(radial, radial) > 0.0))
         radial = fl_v3(1.0, 0.0, 0.0);
     double object = 1.0 / revolve->unit, sign = revolve->normal_sign;
-    out_point->position = fl_v3(radial.x * x * object, (y + revolve->y_center) * object, radial.z * x * object);
+    out_point->position =
+        fl_v3(radial.x * x * object, (y + revolve->y_center) * object, radial.z * x * object);
     if (x <= 4.0 * revolve->tiny && tx != 0.0) /* a pole: the mean of the normals around it */
         out_point->normal = fl_v3(0.0, -copysign(sign, tx), 0.0);
     else

@@ -4,8 +4,8 @@
  * (docs/revolution.md). Everything here is in object space and double, whatever the renderer's
  * precision; the same bits with every instruction set.
  *
- * A ray is o + u d with d of any length above 0. A hit is a root with u_min < u < u_max. Rays that lie
- * in the surface, or touch it without crossing, count as misses there.
+ * A ray is o + u d with d of any length above 0. A hit is a root with u_min < u < u_max. Rays that
+ * lie in the surface, or touch it without crossing, count as misses there.
  */
 #ifndef FL_REVOLVE_H
 #define FL_REVOLVE_H
@@ -21,11 +21,7 @@ typedef enum fl_revolve_solver {
     FL_REVOLVE_NEWTON  /**< Newton from eight starts a segment: the baseline; misses some. */
 } fl_revolve_solver;
 
-enum {
-    FL_REVOLVE_MAX_DEGREE = 15,
-    FL_REVOLVE_MAX_SEGMENTS = 10000,
-    FL_REVOLVE_PACKET = 8
-};
+enum { FL_REVOLVE_MAX_DEGREE = 15, FL_REVOLVE_MAX_SEGMENTS = 10000, FL_REVOLVE_PACKET = 8 };
 
 /** A preprocessed profile: immutable, lives in the arena it was built in. */
 typedef struct fl_revolve fl_revolve;
@@ -41,11 +37,14 @@ typedef struct fl_revolve_hit {
 
 /** The surface at a hit. */
 typedef struct fl_revolve_point {
-    fl_vec3 position; /**< On the surface: radius and height come from the profile, not from the ray. */
-    fl_vec3 normal;   /**< Unit, finite at poles and cusps; outward for a profile that bounds a solid. */
-    double u, v;      /**< Texture: u in (0, 1] runs against the angle from +x to +z, v in [0, 1] along y. */
-    double scale;     /**< Size S of the object. A leaving ray starts 16 e S along the normal, e the unit
-                           roundoff of the type its origin is stored in. */
+    fl_vec3
+        position; /**< On the surface: radius and height come from the profile, not from the ray. */
+    fl_vec3
+        normal; /**< Unit, finite at poles and cusps; outward for a profile that bounds a solid. */
+    double u,
+        v; /**< Texture: u in (0, 1] runs against the angle from +x to +z, v in [0, 1] along y. */
+    double scale; /**< Size S of the object. A leaving ray starts 16 e S along the normal, e the
+                     unit roundoff of the type its origin is stored in. */
 } fl_revolve_point;
 
 /** Eight rays sharing a profile, structure of arrays; lanes outside a mask may hold anything. */
@@ -55,12 +54,13 @@ typedef struct fl_revolve_packet {
     double u_min[FL_REVOLVE_PACKET], u_max[FL_REVOLVE_PACKET];
 } fl_revolve_packet;
 
-/** Split the profile into pieces the solver can certify. Copies what it needs. NULL after an error in
- *  `diags`: a degree or a number of segments out of range, a coordinate that is not finite, a size
- *  outside 1e-200 to 1e200, no area at all, no memory. O(segments * degree^3). */
+/** Split the profile into pieces the solver can certify. Copies what it needs. NULL after an error
+ * in `diags`: a degree or a number of segments out of range, a coordinate that is not finite, a
+ * size outside 1e-200 to 1e200, no area at all, no memory. O(segments * degree^3). */
 fl_revolve *fl_revolve_build(fl_arena *arena, const fl_profile *profile, fl_diags *diags);
 
-/** Use the code for `isa` (which fl_cpu_has) from now on; build chose the best. Not while others use it. */
+/** Use the code for `isa` (which fl_cpu_has) from now on; build chose the best. Not while others
+ * use it. */
 void fl_revolve_set_isa(fl_revolve *revolve, fl_isa isa);
 
 /** Bounds of the surface, rounded outward. */
@@ -70,20 +70,25 @@ fl_box fl_revolve_bounds(const fl_revolve *revolve);
 uint32_t fl_revolve_piece_count(const fl_revolve *revolve);
 
 /** The nearest hit with u in (u_min, u_max). False: none, and *out_hit is untouched. Any thread. */
-bool fl_revolve_nearest(const fl_revolve *revolve, const double o[3], const double d[3], double u_min,
-                        double u_max, fl_revolve_solver solver, fl_revolve_hit *out_hit);
+bool fl_revolve_nearest(const fl_revolve *revolve, const double o[3], const double d[3],
+                        double u_min, double u_max, fl_revolve_solver solver,
+                        fl_revolve_hit *out_hit);
 
-/** Whether anything is hit with u in (u_min, u_max); returns at the first root found. Any thread. */
+/** Whether anything is hit with u in (u_min, u_max); returns at the first root found. Any thread.
+ */
 bool fl_revolve_any(const fl_revolve *revolve, const double o[3], const double d[3], double u_min,
                     double u_max, fl_revolve_solver solver);
 
-/** Lanes of `mask` whose ray may meet the bounding cylinder of the surface: one test for the whole packet. */
-uint32_t fl_revolve_reject8(const fl_revolve *revolve, const fl_revolve_packet *rays, uint32_t mask);
+/** Lanes of `mask` whose ray may meet the bounding cylinder of the surface: one test for the whole
+ * packet. */
+uint32_t fl_revolve_reject8(const fl_revolve *revolve, const fl_revolve_packet *rays,
+                            uint32_t mask);
 
-/** fl_revolve_nearest for the lanes of `mask`: the lanes hit, whose out_hits[] are set; others are untouched.
- *  The same answers, bit for bit, as one by one. */
-uint32_t fl_revolve_nearest8(const fl_revolve *revolve, const fl_revolve_packet *rays, uint32_t mask,
-                             fl_revolve_solver solver, fl_revolve_hit out_hits[FL_REVOLVE_PACKET]);
+/** fl_revolve_nearest for the lanes of `mask`: the lanes hit, whose out_hits[] are set; others are
+ * untouched. The same answers, bit for bit, as one by one. */
+uint32_t fl_revolve_nearest8(const fl_revolve *revolve, const fl_revolve_packet *rays,
+                             uint32_t mask, fl_revolve_solver solver,
+                             fl_revolve_hit out_hits[FL_REVOLVE_PACKET]);
 
 /** fl_revolve_any for the lanes of `mask`: the lanes blocked. */
 uint32_t fl_revolve_any8(const fl_revolve *revolve, const fl_revolve_packet *rays, uint32_t mask,

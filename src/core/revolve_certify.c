@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * The hard cases of the certified solver: parts of a piece on which neither monotony nor a box decides. One source,
- * no vectors, so it is compiled once; its answers do not depend on the instruction set.
+ * The hard cases of the certified solver: parts of a piece on which neither monotony nor a box
+ * decides. One source, no vectors, so it is compiled once; its answers do not depend on the
+ * instruction set.
  */
 #define FL_W 1
-#include "core/revolve_cut.h"
+#include "core/revolve_root.h"
 
 enum { MAX_STEPS = 400, STACK = 96, MAX_M = FL_REVOLVE_MAX_DEGREE };
 
@@ -72,7 +73,8 @@ typedef struct part {
     double h;
 } part;
 
-/* s' = (x / s) x': the quotient as two factors, so that s may be 0; through the axis it is 1 at the pole too. */
+/* s' = (x / s) x': the quotient as two factors, so that s may be 0; through the axis it is 1 at the
+ * pole too. */
 typedef struct ratio {
     double x, s;
 } ratio;
@@ -82,8 +84,8 @@ static ratio ratio_at(const cut *r, const knot *end)
     return r->c > 0.0 ? (ratio){end->x, end->s} : (ratio){1.0, 1.0};
 }
 
-/* Range of s e' = g x x' - s_l y' s over the hodograph, with x / s at either end: e' lies between the quotients by
- * those s. One sign: e is monotone. */
+/* Range of s e' = g x x' - s_l y' s over the hodograph, with x / s at either end: e' lies between
+ * the quotients by those s. One sign: e is monotone. */
 static range slope_range(const cut *r, const side *a, const part *p, ratio end)
 {
     range out = {HUGE_VAL, -HUGE_VAL};
@@ -95,7 +97,8 @@ static range slope_range(const cut *r, const side *a, const part *p, ratio end)
     return out;
 }
 
-/* Whether e, of one sign at both ends, stays away from 0 by the mean value theorem, or is flat to rounding. */
+/* Whether e, of one sign at both ends, stays away from 0 by the mean value theorem, or is flat to
+ * rounding. */
 static bool stays_away(const cut *r, const part *p, range e1)
 {
     double lo = p->lo->e, hi = p->hi->e;
@@ -113,7 +116,8 @@ static bool stays_away(const cut *r, const part *p, range e1)
     return lo + e1.lo * at > 0.0;
 }
 
-/* Whether the cut curve is convex on the part: x s^2 (x'y'' - x''y') + c^2 y' x'^2 keeps its sign. */
+/* Whether the cut curve is convex on the part: x s^2 (x'y'' - x''y') + c^2 y' x'^2 keeps its sign.
+ */
 static bool is_part_convex(const cut *r, const side *a, const part *p)
 {
     double x2[MAX_M], y2[MAX_M], m = (double)(a->n - 1) / p->h;
@@ -122,18 +126,20 @@ static bool is_part_convex(const cut *r, const side *a, const part *p)
         y2[i] = (p->y1[i + 1] - p->y1[i]) * m;
     }
     range x1 = range_of(p->x1, a->n), y1 = range_of(p->y1, a->n);
-    range first = range_mul(x1, range_of(y2, a->n - 1)), second = range_mul(range_of(x2, a->n - 1), y1);
+    range first = range_mul(x1, range_of(y2, a->n - 1)),
+          second = range_mul(range_of(x2, a->n - 1), y1);
     range bend = range_abs((range){first.lo - second.hi, first.hi - second.lo});
     x1 = range_abs(x1);
     y1 = range_abs(y1);
-    double v0 = p->lo->x * p->lo->s * p->lo->s, v1 = p->hi->x * p->hi->s * p->hi->s, c2 = r->c * r->c;
+    double v0 = p->lo->x * p->lo->s * p->lo->s, v1 = p->hi->x * p->hi->s * p->hi->s,
+           c2 = r->c * r->c;
     double bend_lo = fl_min(v0, v1) * bend.lo, bend_hi = fl_max(v0, v1) * bend.hi;
     double turn_lo = c2 * y1.lo * x1.lo * x1.lo, turn_hi = c2 * y1.hi * x1.hi * x1.hi;
     return bend_hi <= turn_lo || turn_hi <= bend_lo;
 }
 
-/* Index of the control vector of the hodograph along the tangent at an end: the first that is not lost in rounding,
- * which at a cusp is not the outermost. */
+/* Index of the control vector of the hodograph along the tangent at an end: the first that is not
+ * lost in rounding, which at a cusp is not the outermost. */
 static uint32_t tangent_at(const part *p, uint32_t n, uint32_t first, int step)
 {
     double size = 0.0;
@@ -145,8 +151,8 @@ static uint32_t tangent_at(const part *p, uint32_t n, uint32_t first, int step)
     return at;
 }
 
-/* For a convex part with one sign at both ends: whether it certainly stays on its side of the line. `*out_split` is
- * where to cut it otherwise. The slopes are s e', of the sign of e'. */
+/* For a convex part with one sign at both ends: whether it certainly stays on its side of the line.
+ * `*out_split` is where to cut it otherwise. The slopes are s e', of the sign of e'. */
 static bool convex_stays(const cut *r, const side *a, const part *p, double *out_split)
 {
     const knot *lo = p->lo, *hi = p->hi;
@@ -159,8 +165,8 @@ static bool convex_stays(const cut *r, const side *a, const part *p, double *out
         return true; /* monotone, or bulging away */
     double v = f0 / (f0 - f1);
     *out_split = lo->t + p->h * fl_clamp(v, 0.1, 0.9);
-    /* The tangents at the ends, directions (sigma x x', y' s), meet at e0 + along f0: the curve stays on the ends'
-     * side of that point. */
+    /* The tangents at the ends, directions (sigma x x', y' s), meet at e0 + along f0: the curve
+     * stays on the ends' side of that point. */
     double tx0 = a->sigma * from.x * p->x1[i], ty0 = p->y1[i] * from.s;
     double tx1 = a->sigma * to.x * p->x1[j], ty1 = p->y1[j] * to.s;
     double cx = a->sigma * (hi->s - lo->s), cy = hi->y - lo->y;

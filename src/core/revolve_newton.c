@@ -2,8 +2,8 @@
  *
  * The baseline: the method of the classic course project, Newton's iteration on
  *     h(t) = sqrt(A (y(t) - B)^2 + C) - |x(t)|
- * from the middles of eight equal parts of every segment, nothing skipped. Kept as it is so that the trade stays
- * measurable; its misses are its own (docs/revolution.md).
+ * from the middles of eight equal parts of every segment, nothing skipped. Kept as it is so that
+ * the trade stays measurable; its misses are its own (docs/revolution.md).
  */
 #include "core/revolve_impl.h"
 
@@ -36,7 +36,8 @@ static bool solve_height(const ray *r, const double *cy, uint32_t n, double *t)
 static bool solve_radius(const ray *r, const double *cx, const double *cy, uint32_t n, double *t)
 {
     for (int step = 0; step < MAX_STEPS; step++) {
-        double x1, y1, x = fl_revolve_poly_slope(cx, n, *t, &x1), y = fl_revolve_poly_slope(cy, n, *t, &y1) - r->b;
+        double x1, y1, x = fl_revolve_poly_slope(cx, n, *t, &x1),
+                       y = fl_revolve_poly_slope(cy, n, *t, &y1) - r->b;
         double root = sqrt(r->a * y * y + r->c), value = root - fabs(x);
         if (fabs(value) < 1e-13)
             return true;
@@ -59,7 +60,8 @@ static int horizontal(const ray *r, double x, double *out_u)
     return 2;
 }
 
-static int solve_start(const ray *r, const double *cx, const double *cy, uint32_t n, double *t, double *out_u)
+static int solve_start(const ray *r, const double *cx, const double *cy, uint32_t n, double *t,
+                       double *out_u)
 {
     if (r->is_flat && !solve_height(r, cy, n, t))
         return 0;
@@ -71,7 +73,9 @@ static int solve_start(const ray *r, const double *cx, const double *cy, uint32_
         return 1;
     }
     *t = guess;
-    return r->is_flat && guess >= 0.0 && guess <= 1.0 ? horizontal(r, fl_revolve_poly(cx, n, guess), out_u) : 0;
+    return r->is_flat && guess >= 0.0 && guess <= 1.0
+               ? horizontal(r, fl_revolve_poly(cx, n, guess), out_u)
+               : 0;
 }
 
 /* The piece that holds parameter t of a segment, for fl_revolve_resolve. */
@@ -87,11 +91,15 @@ static void find_piece(const fl_revolve *revolve, fl_revolve_hit *hit)
     }
 }
 
-bool fl_revolve_newton(const fl_revolve *revolve, const double o[3], const double d[3], double u_min,
-                       double u_max, fl_revolve_hit *out_hit)
+bool fl_revolve_newton(const fl_revolve *revolve, const double o[3], const double d[3],
+                       double u_min, double u_max, fl_revolve_hit *out_hit)
 {
-    ray r = {.ox = o[0] * revolve->unit, .oy = o[1] * revolve->unit - revolve->y_center, .oz = o[2] * revolve->unit,
-             .dx = d[0] * revolve->unit, .dy = d[1] * revolve->unit, .dz = d[2] * revolve->unit};
+    ray r = {.ox = o[0] * revolve->unit,
+             .oy = o[1] * revolve->unit - revolve->y_center,
+             .oz = o[2] * revolve->unit,
+             .dx = d[0] * revolve->unit,
+             .dy = d[1] * revolve->unit,
+             .dz = d[2] * revolve->unit};
     r.q = r.dx * r.dx + r.dz * r.dz;
     double m = r.ox * r.dx + r.oz * r.dz, cross = r.ox * r.dz - r.oz * r.dx;
     r.is_flat = fabs(r.dy) < FLAT * sqrt(r.q + r.dy * r.dy);

@@ -82,7 +82,8 @@ static uint32_t append(double root, double *roots, uint32_t count, uint32_t room
     return count;
 }
 
-uint32_t fl_revolve_roots(const double *bernstein, uint32_t n, double noise, double *out_roots, uint32_t room)
+uint32_t fl_revolve_roots(const double *bernstein, uint32_t n, double noise, double *out_roots,
+                          uint32_t room)
 {
     span stack[MAX_DEPTH + 2];
     uint32_t count = 0, top = 1;

@@ -6,7 +6,8 @@
 
 enum { MAX_N = FL_REVOLVE_MAX_DEGREE, MAX_SPLITS = 8 * MAX_N + 2, MAX_HALVINGS = 7 };
 
-/* When a piece is short and straight enough; 0.3 to 1.5 rad make no measurable difference in speed. */
+/* When a piece is short and straight enough; 0.3 to 1.5 rad make no measurable difference in speed.
+ */
 #define MAX_TURN_COS 0.825336 /* cos 0.6 rad */
 #define MAX_CHORD    0.35     /* of S */
 #define MAX_STRAY    0.25     /* control points off the evenly divided chord, in chords */
@@ -14,7 +15,8 @@ enum { MAX_N = FL_REVOLVE_MAX_DEGREE, MAX_SPLITS = 8 * MAX_N + 2, MAX_HALVINGS =
 #define SNAP         1e-14    /* radius of an inner node that counts as on the axis */
 #define JOIN         1e-14    /* ends of neighbouring segments this near are one node */
 
-/* hi + lo, |lo| <= ulp(hi) / 2: coordinates of pieces are formed with twice the digits and rounded once. */
+/* hi + lo, |lo| <= ulp(hi) / 2: coordinates of pieces are formed with twice the digits and rounded
+ * once. */
 typedef struct pair {
     double hi, lo;
 } pair;
@@ -75,8 +77,8 @@ typedef struct splitter {
     pair2 point[MAX_N + 1]; /* control points of the segment */
     uint32_t n;             /* their degree */
     uint32_t segment;
-    node first, last;       /* its end nodes, shared with the neighbours */
-    double *pieces;         /* heap, until the number is known */
+    node first, last; /* its end nodes, shared with the neighbours */
+    double *pieces;   /* heap, until the number is known */
     uint8_t *is_convex;
     uint32_t *owner;
     uint32_t count, room;
@@ -118,7 +120,8 @@ static node node_at(const splitter *s, double t)
     return (node){x < SNAP ? 0.0 : x, w[0].y.hi};
 }
 
-/* Whether the part with these control points is worth halving: bent, long or unevenly parametrised. */
+/* Whether the part with these control points is worth halving: bent, long or unevenly parametrised.
+ */
 static bool is_coarse(const pair2 *p, uint32_t n, double size)
 {
     double cx = p[n].x.hi - p[0].x.hi, cy = p[n].y.hi - p[0].y.hi, chord2 = cx * cx + cy * cy;
@@ -126,7 +129,8 @@ static bool is_coarse(const pair2 *p, uint32_t n, double size)
     if (chord2 > MAX_CHORD * MAX_CHORD * size * size)
         return true;
     for (uint32_t i = 1; i < n; i++) {
-        double f = (double)i / n, ex = p[i].x.hi - (p[0].x.hi + f * cx), ey = p[i].y.hi - (p[0].y.hi + f * cy);
+        double f = (double)i / n, ex = p[i].x.hi - (p[0].x.hi + f * cx),
+               ey = p[i].y.hi - (p[0].y.hi + f * cy);
         double off2 = ex * ex + ey * ey;
         if (off2 > MAX_STRAY * MAX_STRAY * chord2 && off2 > SMALL_CHORD * SMALL_CHORD * size * size)
             return true;
@@ -183,8 +187,9 @@ static void to_powers(pair *c, uint32_t n, double *out)
     }
 }
 
-/* Bends towards the axis side that makes every cut convex: (x'y'' - x''y') y' >= 0, see docs/revolution.md.
- *  Neither factor changes sign within a piece, so its middle decides; noise counts as 0. */
+/* Bends towards the axis side that makes every cut convex: (x'y'' - x''y') y' >= 0, see
+ * docs/revolution.md. Neither factor changes sign within a piece, so its middle decides; noise
+ * counts as 0. */
 static bool is_piece_convex(const double *px, const double *py, uint32_t n)
 {
     double x1 = 0.0, y1 = 0.0, x2 = 0.0, y2 = 0.0, power = 1.0;
@@ -243,12 +248,15 @@ static bool add_interval(splitter *s, double a, double b, double size, uint32_t 
     restrict_to(s, a, b, p);
     double mid = 0.5 * (a + b);
     if (halvings < MAX_HALVINGS && mid > a && mid < b && is_coarse(p, s->n, size))
-        return add_interval(s, a, mid, size, halvings + 1) && add_interval(s, mid, b, size, halvings + 1);
+        return add_interval(s, a, mid, size, halvings + 1) &&
+               add_interval(s, mid, b, size, halvings + 1);
     return add_piece(s, p, a, b);
 }
 
-/* Product of two polynomials in Bernstein form, added to out times `sign`; sizes are those of coefficients. */
-static void bernstein_product(const double *f, uint32_t a, const double *g, uint32_t b, double sign, double *out)
+/* Product of two polynomials in Bernstein form, added to out times `sign`; sizes are those of
+ * coefficients. */
+static void bernstein_product(const double *f, uint32_t a, const double *g, uint32_t b, double sign,
+                              double *out)
 {
     static const uint32_t limit = 2 * MAX_N;
     double row_a[2 * MAX_N + 1], row_b[2 * MAX_N + 1], row[2 * MAX_N + 1];
@@ -269,7 +277,8 @@ static void bernstein_product(const double *f, uint32_t a, const double *g, uint
 static uint32_t find_splits(const splitter *s, double *out)
 {
     uint32_t n = s->n, count = 1;
-    double x[MAX_N + 1], x1[MAX_N + 1], y1[MAX_N + 1], x2[MAX_N + 1], y2[MAX_N + 1], bend[2 * MAX_N + 1] = {0};
+    double x[MAX_N + 1], x1[MAX_N + 1], y1[MAX_N + 1], x2[MAX_N + 1], y2[MAX_N + 1],
+        bend[2 * MAX_N + 1] = {0};
     double speed = 0.0, size = s->revolve->tiny;
     for (uint32_t i = 0; i <= n; i++)
         x[i] = s->point[i].x.hi;
@@ -307,13 +316,15 @@ static uint32_t find_splits(const splitter *s, double *out)
 }
 
 /* Load segment i; its first node is the last one of its predecessor when they join. */
-static void load_segment(splitter *s, uint32_t segment, const double *x, const double *y, const double *y_low)
+static void load_segment(splitter *s, uint32_t segment, const double *x, const double *y,
+                         const double *y_low)
 {
     const size_t at = (size_t)segment * (s->n + 1);
     for (uint32_t i = 0; i <= s->n; i++)
         s->point[i] = (pair2){{x[at + i], 0.0}, {y[at + i], y_low[at + i]}};
     node first = {fabs(x[at]), y[at]};
-    bool joins = segment > 0 && fabs(first.x - s->last.x) <= JOIN && fabs(first.y - s->last.y) <= JOIN;
+    bool joins =
+        segment > 0 && fabs(first.x - s->last.x) <= JOIN && fabs(first.y - s->last.y) <= JOIN;
     s->first = joins ? s->last : first;
     s->last = (node){fabs(x[at + s->n]), y[at + s->n]};
     s->segment = segment;
@@ -324,22 +335,23 @@ static bool has_area(const splitter *s)
 {
     bool moves = false, leaves = false;
     for (uint32_t i = 0; i <= s->n; i++) {
-        moves = moves || s->point[i].x.hi != s->point[0].x.hi || s->point[i].y.hi != s->point[0].y.hi ||
-                s->point[i].y.lo != s->point[0].y.lo;
+        moves = moves || s->point[i].x.hi != s->point[0].x.hi ||
+                s->point[i].y.hi != s->point[0].y.hi || s->point[i].y.lo != s->point[0].y.lo;
         leaves = leaves || s->point[i].x.hi != 0.0;
     }
     return moves && leaves;
 }
 
-static bool split_all(splitter *s, const double *x, const double *y, const double *y_low, uint32_t segment_count,
-                      double size)
+static bool split_all(splitter *s, const double *x, const double *y, const double *y_low,
+                      uint32_t segment_count, double size)
 {
     uint32_t n = s->n;
     const size_t end = (size_t)segment_count * (n + 1) - 1;
     for (uint32_t i = 0; i < segment_count; i++) {
         double splits[MAX_SPLITS];
         load_segment(s, i, x, y, y_low);
-        if (i + 1 == segment_count && fabs(fabs(x[end]) - fabs(x[0])) <= JOIN && fabs(y[end] - y[0]) <= JOIN)
+        if (i + 1 == segment_count && fabs(fabs(x[end]) - fabs(x[0])) <= JOIN &&
+            fabs(y[end] - y[0]) <= JOIN)
             s->last = (node){fabs(x[0]), y[0]}; /* a closed profile */
         if (!has_area(s))
             continue;
@@ -371,8 +383,9 @@ static bool keep(splitter *s, fl_arena *arena)
     return true;
 }
 
-bool fl_revolve_split(fl_revolve *revolve, fl_arena *arena, const double *x, const double *y, const double *y_low,
-                      uint32_t segment_count, uint32_t degree, fl_loc loc, fl_diags *diags)
+bool fl_revolve_split(fl_revolve *revolve, fl_arena *arena, const double *x, const double *y,
+                      const double *y_low, uint32_t segment_count, uint32_t degree, fl_loc loc,
+                      fl_diags *diags)
 {
     splitter s = {.revolve = revolve, .n = degree};
     revolve->degree = degree < 3 ? 3 : degree;
@@ -384,7 +397,8 @@ bool fl_revolve_split(fl_revolve *revolve, fl_arena *arena, const double *x, con
     if (!ok)
         fl_out_of_memory(diags, "the pieces of a revolution surface");
     else if (s.count == 0)
-        ok = fl_error(diags, loc, "the profile encloses no area: it is a point or lies on the axis");
+        ok =
+            fl_error(diags, loc, "the profile encloses no area: it is a point or lies on the axis");
     else if (!keep(&s, arena))
         ok = fl_out_of_memory(diags, "the pieces of a revolution surface");
     free(s.pieces);
@@ -393,7 +407,8 @@ bool fl_revolve_split(fl_revolve *revolve, fl_arena *arena, const double *x, con
     return ok;
 }
 
-static void widen(fl_revolve_group *g, uint32_t lane, double xlo, double xhi, double ylo, double yhi)
+static void widen(fl_revolve_group *g, uint32_t lane, double xlo, double xhi, double ylo,
+                  double yhi)
 {
     /* The pad is some 30 roundings to float, so to nearest is outward enough. */
     g->xlo[lane] = (float)(xlo - FL_REVOLVE_PAD);
@@ -428,14 +443,15 @@ static fl_revolve_group *new_groups(fl_arena *arena, uint32_t count)
 
 bool fl_revolve_group_boxes(fl_revolve *revolve, fl_arena *arena)
 {
-    uint32_t n = revolve->degree, count = (revolve->piece_count + FL_REVOLVE_GROUP - 1) / FL_REVOLVE_GROUP;
+    uint32_t n = revolve->degree,
+             count = (revolve->piece_count + FL_REVOLVE_GROUP - 1) / FL_REVOLVE_GROUP;
     fl_revolve_group *groups = new_groups(arena, count);
     if (!groups)
         return false;
     for (uint32_t i = 0; i < revolve->piece_count; i++) {
         const double *p = fl_revolve_piece(revolve, i), *end = p + 2 * n + 2;
-        widen(&groups[i / FL_REVOLVE_GROUP], i % FL_REVOLVE_GROUP, fl_min(p[0], end[0]), fl_max(p[0], end[0]),
-              fl_min(p[n + 1], end[1]), fl_max(p[n + 1], end[1]));
+        widen(&groups[i / FL_REVOLVE_GROUP], i % FL_REVOLVE_GROUP, fl_min(p[0], end[0]),
+              fl_max(p[0], end[0]), fl_min(p[n + 1], end[1]), fl_max(p[n + 1], end[1]));
     }
     revolve->groups[0] = groups;
     revolve->group_count[0] = count;

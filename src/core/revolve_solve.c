@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The certified solver, compiled once per instruction set (wide.h). Vectors only skip: every box and bound is
- * padded beyond float rounding, and whatever remains is decided in scalar double, so hits are the same bits
- * everywhere.
+ * The certified solver, compiled once per instruction set (wide.h). Vectors only skip: every box
+ * and bound is padded beyond float rounding, and whatever remains is decided in scalar double, so
+ * hits are the same bits everywhere.
  */
-#include "core/revolve_cut.h"
+#include "core/revolve_root.h"
 
 enum { ROOM = 32 }; /* candidates kept in order before they are tried */
 
@@ -14,12 +14,13 @@ enum { ROOM = 32 }; /* candidates kept in order before they are tried */
 
 /* Rays in their cut planes, structure of arrays. */
 typedef struct frames {
-    double c[FL_REVOLVE_PACKET], k[FL_REVOLVE_PACKET], s_l[FL_REVOLVE_PACKET], d_y[FL_REVOLVE_PACKET];
+    double c[FL_REVOLVE_PACKET], k[FL_REVOLVE_PACKET], s_l[FL_REVOLVE_PACKET],
+        d_y[FL_REVOLVE_PACKET];
     double w0[FL_REVOLVE_PACKET], per_u[FL_REVOLVE_PACKET];
 } frames;
 
-/* A number as the sum of two of 26 digits, for Dekker's exact product. Plain operations only: a fused multiply-add
- * would give the same bits, but not every machine has one. */
+/* A number as the sum of two of 26 digits, for Dekker's exact product. Plain operations only: a
+ * fused multiply-add would give the same bits, but not every machine has one. */
 typedef struct halves {
     fl_wd all, hi, lo;
 } halves;
@@ -55,7 +56,7 @@ typedef struct cull {
 } cull;
 
 typedef struct candidate {
-    float w; /* a lower bound of w in the piece's box */
+    float w;       /* a lower bound of w in the piece's box */
     uint32_t code; /* 2 piece + (sigma < 0) */
 } candidate;
 
@@ -68,23 +69,28 @@ static double direction_scale(double dx, double dy, double dz)
     return m > 0x1p1000 ? 0x1p-1000 : 1.0 / fl_revolve_power_above(m);
 }
 
-/* The FL_WD rays from lane `i` on in their cut planes. Returns the lanes that may meet the bounding cylinder;
- * *out_odd: those whose direction must be scaled first. */
-FL_INLINE uint32_t set_up(const fl_revolve *v, const fl_revolve_packet *rays, int i, frames *out, uint32_t *out_odd)
+/* The FL_WD rays from lane `i` on in their cut planes. Returns the lanes that may meet the bounding
+ * cylinder; *out_odd: those whose direction must be scaled first. */
+FL_INLINE uint32_t set_up(const fl_revolve *v, const fl_revolve_packet *rays, int i, frames *out,
+                          uint32_t *out_odd)
 {
-    const fl_wd center = fl_wd_set(v->y_center), radius = fl_wd_set(v->radius), zero = fl_wd_set(0.0);
+    const fl_wd center = fl_wd_set(v->y_center), radius = fl_wd_set(v->radius),
+                zero = fl_wd_set(0.0);
     const fl_wd mid = fl_wd_set(0.5 * (v->y_lo + v->y_hi)), half = v->y_hi - mid;
     fl_wd ox = fl_wd_load(rays->ox + i) * v->unit, oz = fl_wd_load(rays->oz + i) * v->unit;
     fl_wd height = fl_wd_load(rays->oy + i) * v->unit, oy = height - center, back = oy + center;
     fl_wd oy_low = (height - back) + (center - (back - oy));
-    fl_wd dx = fl_wd_load(rays->dx + i), dy = fl_wd_load(rays->dy + i), dz = fl_wd_load(rays->dz + i);
-    fl_wd l2 = dx * dx + dz * dz, d2 = l2 + dy * dy, length = fl_wd_sqrt(d2), inverse = 1.0 / length;
+    fl_wd dx = fl_wd_load(rays->dx + i), dy = fl_wd_load(rays->dy + i),
+          dz = fl_wd_load(rays->dz + i);
+    fl_wd l2 = dx * dx + dz * dz, d2 = l2 + dy * dy, length = fl_wd_sqrt(d2),
+          inverse = 1.0 / length;
     halves hox = halves_of(ox), hoy = halves_of(oy), hoz = halves_of(oz);
     halves hdx = halves_of(dx), hdy = halves_of(dy), hdz = halves_of(dz);
     fl_wd l = fl_wd_sqrt(l2), inverse_l = 1.0 / l, hx = dx * inverse_l, hz = dz * inverse_l;
     fl_wd s_l = l * inverse, d_y = dy * inverse, p0 = ox * hx + oz * hz;
     fl_wd c = fl_wd_abs(difference(&hox, &hdz, &hoz, &hdx)) * inverse_l;
-    fl_wd k = (hx * difference(&hox, &hdy, &hdx, &hoy) + hz * difference(&hoz, &hdy, &hdz, &hoy)) * inverse -
+    fl_wd k = (hx * difference(&hox, &hdy, &hdx, &hoy) + hz * difference(&hoz, &hdy, &hdz, &hoy)) *
+                  inverse -
               s_l * oy_low;
     /* Vertical rays are cut through the axis and the ray. */
     fl_wl vertical = l2 <= 1e-180 * d2;
@@ -121,15 +127,17 @@ FL_INLINE void set_up_cull(cull *f, const cut *r)
     f->d_y = fl_wf_set((float)r->d_y);
     f->k_lo = fl_wf_set((float)(r->k - FL_REVOLVE_PAD));
     f->k_hi = fl_wf_set((float)(r->k + FL_REVOLVE_PAD));
-    /* Boxes lie within 4 of the axis' middle: beyond 64 nothing changes, and float cannot overflow. */
+    /* Boxes lie within 4 of the axis' middle: beyond 64 nothing changes, and float cannot overflow.
+     */
     w_min = fl_clamp(w_min, -64.0, 64.0);
     f->w_min = fl_wf_set((float)(w_min - 4.0 * FL_REVOLVE_PAD - 1e-15 * fabs(r->w0)));
     f->down = r->d_y < 0.0;
 }
 
-/* Test the boxes of a group on both sides of the axis. Returns bit i for box i on side +1, bit 8 + i on side -1;
- * out_w: lower bounds of w in the same order. */
-FL_INLINE uint32_t cull_group(const cull *f, const fl_revolve_group *group, float w_max, float out_w[16])
+/* Test the boxes of a group on both sides of the axis. Returns bit i for box i on side +1, bit 8 +
+ * i on side -1; out_w: lower bounds of w in the same order. */
+FL_INLINE uint32_t cull_group(const cull *f, const fl_revolve_group *group, float w_max,
+                              float out_w[16])
 {
     const fl_wf zero = fl_wf_set(0.0f), limit = fl_wf_set(w_max);
     uint32_t plus = 0, minus = 0;
@@ -141,7 +149,8 @@ FL_INLINE uint32_t cull_group(const cull *f, const fl_revolve_group *group, floa
         s_lo = fl_wf_select(x_lo > f->c, s_lo, zero);
         fl_wf q_lo = f->s_l * y_lo + f->k_lo, q_hi = f->s_l * y_hi + f->k_hi;
         fl_wf a_lo = f->g * s_lo, a_hi = f->g * s_hi;
-        fl_wf w0 = f->d_y * y_lo, w1 = f->d_y * y_hi, w_lo = fl_wf_min(w0, w1), w_hi = fl_wf_max(w0, w1);
+        fl_wf w0 = f->d_y * y_lo, w1 = f->d_y * y_hi, w_lo = fl_wf_min(w0, w1),
+              w_hi = fl_wf_max(w0, w1);
         fl_wf p_lo = f->s_l * s_lo, p_hi = f->s_l * s_hi;
         fl_wm reached = x_hi >= f->c;
         fl_wm with = reached & (a_hi >= q_lo) & (a_lo <= q_hi); /* the side where g = |d_y| */
@@ -157,14 +166,16 @@ FL_INLINE uint32_t cull_group(const cull *f, const fl_revolve_group *group, floa
     return plus | minus << 8;
 }
 
-/* One piece on one side. Most pieces are decided here by the signs of e at the ends: e is monotone, or the boxes of
- * g s and q are apart, or the cut curve is convex. */
+/* One piece on one side. Most pieces are decided here by the signs of e at the ends: e is monotone,
+ * or the boxes of g s and q are apart, or the cut curve is convex. */
 FL_INLINE void try_degree(cut *r, const fl_revolve *v, uint32_t code, uint32_t n)
 {
     const double *piece = fl_revolve_piece(v, code >> 1), *end = piece + 2 * n + 2;
-    side a = {piece, piece + n + 1, n, code >> 1, code & 1 ? -1.0 : 1.0, 0.0, v->is_convex[code >> 1]};
+    side a = {piece, piece + n + 1,          n, code >> 1, code & 1 ? -1.0 : 1.0,
+              0.0,   v->is_convex[code >> 1]};
     a.g = a.sigma * r->d_y;
-    knot lo = cut_knot(r, a.g, 0.0, piece[0], piece[n + 1]), hi = cut_knot(r, a.g, 1.0, end[0], end[1]);
+    knot lo = cut_knot(r, a.g, 0.0, piece[0], piece[n + 1]),
+         hi = cut_knot(r, a.g, 1.0, end[0], end[1]);
     if (lo.x < r->c && hi.x < r->c)
         return;
     bool is_cut = lo.x < r->c || hi.x < r->c;
@@ -175,11 +186,13 @@ FL_INLINE void try_degree(cut *r, const fl_revolve *v, uint32_t code, uint32_t n
     }
     double a0 = a.g * lo.s, a1 = a.g * hi.s;
     bool same = !cut_crosses(&lo, &hi), monotone = (a1 - a0) * (hi.q - lo.q) <= 0.0;
-    if (same && (monotone || fl_max(a0, a1) < fl_min(lo.q, hi.q) || fl_min(a0, a1) > fl_max(lo.q, hi.q)))
+    if (same &&
+        (monotone || fl_max(a0, a1) < fl_min(lo.q, hi.q) || fl_min(a0, a1) > fl_max(lo.q, hi.q)))
         return;
     if (!same && (monotone || a.is_convex)) {
         double t = cut_root(r, &a, &lo, &hi, is_cut);
-        if (is_cut && fl_revolve_poly(a.px, n, t) < r->c) { /* q is 0 to rounding where the piece enters radius c */
+        if (is_cut && fl_revolve_poly(a.px, n, t) <
+                          r->c) { /* q is 0 to rounding where the piece enters radius c */
             cut_clip(r, &a, &lo, &hi);
             t = lo.s > 0.0 ? hi.t : lo.t;
         }
@@ -220,8 +233,8 @@ FL_INLINE float limit_of(const cut *r)
 }
 
 /* Add the bits of a group to the ordered list, trying it out whenever it is full. */
-FL_INLINE uint32_t collect(cut *r, const fl_revolve *v, uint32_t bits, uint32_t first, const float w[16],
-                           candidate *list, uint32_t count)
+FL_INLINE uint32_t collect(cut *r, const fl_revolve *v, uint32_t bits, uint32_t first,
+                           const float w[16], candidate *list, uint32_t count)
 {
     while (bits) {
         uint32_t bit = (uint32_t)__builtin_ctz(bits), at = count;
@@ -244,7 +257,8 @@ FL_INLINE void solve(cut *r, const fl_revolve *v)
     candidate list[ROOM];
     float w[16];
     uint32_t count = 0;
-    uint32_t pending[FL_REVOLVE_LEVELS * FL_REVOLVE_GROUP][2], top = 0; /* groups to look into: level, index */
+    uint32_t pending[FL_REVOLVE_LEVELS * FL_REVOLVE_GROUP][2],
+        top = 0; /* groups to look into: level, index */
     set_up_cull(&f, r);
     for (uint32_t i = 0; i < v->group_count[v->first_level]; i++) {
         pending[0][0] = v->first_level;
@@ -278,15 +292,17 @@ FL_INLINE void store_hit(const cut *r, const fl_revolve *v, fl_revolve_hit *out)
     out->segment = v->segment[r->piece];
 }
 
-/* Rays that may meet the bounding cylinder, for FL_WD lanes from `i` on: bits. The tests of set_up without their
- * divisions, times |d| and the horizontal length of d, and padded for plain products. */
+/* Rays that may meet the bounding cylinder, for FL_WD lanes from `i` on: bits. The tests of set_up
+ * without their divisions, times |d| and the horizontal length of d, and padded for plain products.
+ */
 FL_INLINE uint32_t reach_bits(const fl_revolve *v, const fl_revolve_packet *rays, int i)
 {
     fl_wd unit = fl_wd_set(v->unit), half = fl_wd_set(0.5 * (v->y_hi - v->y_lo));
     fl_wd mid = fl_wd_set(0.5 * (v->y_hi + v->y_lo) + v->y_center);
     fl_wd ox = fl_wd_load(rays->ox + i) * unit, oy = fl_wd_load(rays->oy + i) * unit - mid;
     fl_wd oz = fl_wd_load(rays->oz + i) * unit;
-    fl_wd dx = fl_wd_load(rays->dx + i), dy = fl_wd_load(rays->dy + i), dz = fl_wd_load(rays->dz + i);
+    fl_wd dx = fl_wd_load(rays->dx + i), dy = fl_wd_load(rays->dy + i),
+          dz = fl_wd_load(rays->dz + i);
     fl_wd l2 = dx * dx + dz * dz, d2 = l2 + dy * dy, slope = fl_wd_abs(dy);
     fl_wd pad = 1e-6 + 4e-15 * (fl_wd_abs(ox) + fl_wd_abs(oy) + fl_wd_abs(oz) + fabs(v->y_center));
     fl_wd radius = v->radius + pad, cross = ox * dz - oz * dx;
@@ -318,15 +334,18 @@ static uint32_t nearest8(const fl_revolve *v, const fl_revolve_packet *rays, uin
                          fl_revolve_hit *out_hits);
 
 /* The rays of `odd` again, one by one, with directions of a length near 1: u d is (u / f) (f d). */
-static uint32_t solve_scaled(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t odd, fl_revolve_hit *out_hits)
+static uint32_t solve_scaled(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t odd,
+                             fl_revolve_hit *out_hits)
 {
     uint32_t hits = 0;
     for (; odd; odd &= odd - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(odd);
         double f = direction_scale(rays->dx[i], rays->dy[i], rays->dz[i]);
-        double dx = rays->dx[i] * f, dy = rays->dy[i] * f, dz = rays->dz[i] * f, d2 = dx * dx + dy * dy + dz * dz;
-        fl_revolve_packet one = {{rays->ox[i]}, {rays->oy[i]}, {rays->oz[i]}, {dx}, {dy}, {dz},
-                                 {rays->u_min[i] / f}, {rays->u_max[i] / f}};
+        double dx = rays->dx[i] * f, dy = rays->dy[i] * f, dz = rays->dz[i] * f,
+               d2 = dx * dx + dy * dy + dz * dz;
+        fl_revolve_packet one = {
+            {rays->ox[i]}, {rays->oy[i]}, {rays->oz[i]},        {dx},
+            {dy},          {dz},          {rays->u_min[i] / f}, {rays->u_max[i] / f}};
         fl_revolve_hit hit;
         if (!(d2 > LEN_MIN && d2 < LEN_MAX) || !nearest8(v, &one, 1, &hit))
             continue;
@@ -340,8 +359,8 @@ static uint32_t solve_scaled(const fl_revolve *v, const fl_revolve_packet *rays,
     return hits;
 }
 
-FL_INLINE uint32_t solve8(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t mask, bool is_any,
-                          fl_revolve_hit *out_hits)
+FL_INLINE uint32_t solve8(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t mask,
+                          bool is_any, fl_revolve_hit *out_hits)
 {
     frames f;
     uint32_t hits = 0, left = reject8(v, rays, mask), odd_lanes = 0;
@@ -355,7 +374,12 @@ FL_INLINE uint32_t solve8(const fl_revolve *v, const fl_revolve_packet *rays, ui
     }
     for (; left; left &= left - 1) {
         uint32_t i = (uint32_t)__builtin_ctz(left);
-        cut r = {.c = f.c[i], .k = f.k[i], .s_l = f.s_l[i], .d_y = f.d_y[i], .w0 = f.w0[i], .per_u = f.per_u[i]};
+        cut r = {.c = f.c[i],
+                 .k = f.k[i],
+                 .s_l = f.s_l[i],
+                 .d_y = f.d_y[i],
+                 .w0 = f.w0[i],
+                 .per_u = f.per_u[i]};
         r.u_per_w = 1.0 / r.per_u;
         r.u_min = rays->u_min[i];
         r.u = rays->u_max[i];
@@ -372,13 +396,15 @@ FL_INLINE uint32_t solve8(const fl_revolve *v, const fl_revolve_packet *rays, ui
     return odd_lanes ? hits | solve_scaled(v, rays, odd_lanes, out_hits) : hits;
 }
 
-static uint32_t nearest8(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t mask, fl_revolve_hit *out_hits)
+static uint32_t nearest8(const fl_revolve *v, const fl_revolve_packet *rays, uint32_t mask,
+                         fl_revolve_hit *out_hits)
 {
     return solve8(v, rays, mask, false, out_hits);
 }
 
 /* A packet of one ray, in as many lanes as are looked at. */
-FL_INLINE void splat(fl_revolve_packet *out, const double o[3], const double d[3], double u_min, double u_max)
+FL_INLINE void splat(fl_revolve_packet *out, const double o[3], const double d[3], double u_min,
+                     double u_max)
 {
     fl_wd_store(out->ox, fl_wd_set(o[0]));
     fl_wd_store(out->oy, fl_wd_set(o[1]));
@@ -390,15 +416,16 @@ FL_INLINE void splat(fl_revolve_packet *out, const double o[3], const double d[3
     fl_wd_store(out->u_max, fl_wd_set(u_max));
 }
 
-static bool nearest(const fl_revolve *v, const double o[3], const double d[3], double u_min, double u_max,
-                    fl_revolve_hit *out_hit)
+static bool nearest(const fl_revolve *v, const double o[3], const double d[3], double u_min,
+                    double u_max, fl_revolve_hit *out_hit)
 {
     fl_revolve_packet one;
     splat(&one, o, d, u_min, u_max);
     return solve8(v, &one, 1, false, out_hit) != 0;
 }
 
-static bool any(const fl_revolve *v, const double o[3], const double d[3], double u_min, double u_max)
+static bool any(const fl_revolve *v, const double o[3], const double d[3], double u_min,
+                double u_max)
 {
     fl_revolve_packet one;
     splat(&one, o, d, u_min, u_max);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "core/trace.h"
+#include "core/trace_piece.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,7 +11,7 @@ enum {
     SURFACE_ARRAYS = 12 /* px..pz ngx..ngz nsx..nsz offset u v */
 };
 
-static const fl_isect_kernels *kernels_of(const fl_compiled *scene)
+const fl_isect_kernels *fl_trace_kernels(const fl_compiled *scene)
 {
     static const fl_isect_kernels *const table[FL_ISA_COUNT] = {
         [FL_ISA_SCALAR] = &fl_isect_kernels_scalar,
@@ -26,21 +26,12 @@ static const fl_isect_kernels *kernels_of(const fl_compiled *scene)
     return table[scene->isa];
 }
 
-/* Streams of one piece, all in `memory`. */
-typedef struct piece {
-    float *memory;
-    fl_rays rays;
-    fl_hits hits;
-    fl_surface surface;
-} piece;
-
-static void piece_deinit(piece *p)
+void fl_piece_deinit(fl_piece *p)
 {
     free(p->memory);
 }
 
-/* `capacity` is a multiple of 16, so that every array is aligned to 64 bytes. */
-static bool piece_init(piece *p, uint32_t capacity)
+bool fl_piece_init(fl_piece *p, uint32_t capacity)
 {
     size_t arrays = INPUT_ARRAYS + HIT_ARRAYS + SURFACE_ARRAYS;
     float *next = p->memory = aligned_alloc(64, arrays * capacity * sizeof(float));
@@ -61,7 +52,7 @@ static bool piece_init(piece *p, uint32_t capacity)
     return true;
 }
 
-static void set_ray(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
+void fl_piece_set_ray(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
 {
     rays->ox[i] = (float)o.x;
     rays->oy[i] = (float)o.y;
@@ -73,15 +64,14 @@ static void set_ray(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max
     rays->source_object[i] = rays->source_prim[i] = FL_NONE;
 }
 
-/* Entries up to the next multiple of 8 hold rays that hit nothing. */
-static void set_count(fl_rays *rays, uint32_t count)
+void fl_piece_set_count(fl_rays *rays, uint32_t count)
 {
     rays->count = count;
     for (uint32_t i = count; i % 8 != 0; i++)
-        set_ray(rays, i, fl_v3(0.0, 0.0, 0.0), fl_v3(0.0, 0.0, 1.0), -1.0f);
+        fl_piece_set_ray(rays, i, fl_v3(0.0, 0.0, 0.0), fl_v3(0.0, 0.0, 1.0), -1.0f);
 }
 
-static void fill_pick(const fl_frame *frame, const piece *p, fl_vec3 origin, fl_vec3 direction,
+static void fill_pick(const fl_frame *frame, const fl_piece *p, fl_vec3 origin, fl_vec3 direction,
                       fl_pick *out_pick)
 {
     const fl_surface *s = &p->surface;
@@ -103,16 +93,16 @@ static void fill_pick(const fl_frame *frame, const piece *p, fl_vec3 origin, fl_
 
 bool fl_trace_pick(const fl_frame *frame, double x_px, double y_px, fl_pick *out_pick)
 {
-    piece p = {0};
-    if (!piece_init(&p, 16))
+    fl_piece p = {0};
+    if (!fl_piece_init(&p, 16))
         return false;
     /* Through the centre of the lens: the pinhole ray whatever the aperture. */
     fl_vec3 origin, direction;
     fl_frame_ray(frame, x_px, y_px, 0.0, 0.0, &origin, &direction);
-    set_ray(&p.rays, 0, origin, direction, INFINITY);
-    set_count(&p.rays, 1);
+    fl_piece_set_ray(&p.rays, 0, origin, direction, INFINITY);
+    fl_piece_set_count(&p.rays, 1);
     const fl_compiled *scene = frame->scene;
-    const fl_isect_kernels *kernels = kernels_of(scene);
+    const fl_isect_kernels *kernels = fl_trace_kernels(scene);
     fl_isect_context context = {.solver = frame->params.solver};
     kernels->nearest(&scene->geometry, &p.rays, &p.hits, &context);
     *out_pick = (fl_pick){.object = FL_NONE, .prim = FL_NONE};
@@ -120,22 +110,22 @@ bool fl_trace_pick(const fl_frame *frame, double x_px, double y_px, fl_pick *out
         kernels->resolve(&scene->geometry, &p.rays, &p.hits, NULL, &p.surface, &context);
         fill_pick(frame, &p, origin, direction, out_pick);
     }
-    piece_deinit(&p);
+    fl_piece_deinit(&p);
     return true;
 }
 
 /* Rays [begin, begin + count) of the caller's arrays into the piece. */
-static void load_piece(piece *p, const fl_compiled *scene, const float *origins,
+static void load_piece(fl_piece *p, const fl_compiled *scene, const float *origins,
                        const float *directions, const float *t_max, size_t begin, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
         const float *o = origins + 3 * (begin + i), *d = directions + 3 * (begin + i);
         fl_vec3 origin =
             fl_v3_sub(fl_v3((double)o[0], (double)o[1], (double)o[2]), scene->geometry.origin);
-        set_ray(&p->rays, i, origin, fl_v3((double)d[0], (double)d[1], (double)d[2]),
-                t_max ? t_max[begin + i] : INFINITY);
+        fl_piece_set_ray(&p->rays, i, origin, fl_v3((double)d[0], (double)d[1], (double)d[2]),
+                         t_max ? t_max[begin + i] : INFINITY);
     }
-    set_count(&p->rays, count);
+    fl_piece_set_count(&p->rays, count);
 }
 
 static void add_counts(fl_isect_counts *sum, const fl_isect_context *context)
@@ -150,14 +140,14 @@ bool fl_trace_nearest(const fl_compiled *scene, const float *origins, const floa
                       size_t count, float *out_t, uint32_t *out_object, uint32_t *out_prim,
                       fl_isect_counts *counts)
 {
-    piece p = {0};
-    if (!piece_init(&p, PIECE_RAYS))
+    fl_piece p = {0};
+    if (!fl_piece_init(&p, PIECE_RAYS))
         return false;
     fl_isect_context context = {0};
     for (size_t begin = 0; begin < count; begin += PIECE_RAYS) {
         uint32_t n = count - begin < PIECE_RAYS ? (uint32_t)(count - begin) : PIECE_RAYS;
         load_piece(&p, scene, origins, directions, NULL, begin, n);
-        kernels_of(scene)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
+        fl_trace_kernels(scene)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
         for (uint32_t i = 0; i < n; i++) {
             if (out_t)
                 out_t[begin + i] = p.hits.t[i];
@@ -168,25 +158,41 @@ bool fl_trace_nearest(const fl_compiled *scene, const float *origins, const floa
         }
     }
     add_counts(counts, &context);
-    piece_deinit(&p);
+    fl_piece_deinit(&p);
     return true;
 }
 
 bool fl_trace_any(const fl_compiled *scene, const float *origins, const float *directions,
                   const float *t_max, size_t count, uint32_t *out_blocked, fl_isect_counts *counts)
 {
-    piece p = {0};
-    if (!piece_init(&p, PIECE_RAYS))
+    fl_piece p = {0};
+    if (!fl_piece_init(&p, PIECE_RAYS))
         return false;
     fl_isect_context context = {0};
     for (size_t begin = 0; begin < count; begin += PIECE_RAYS) {
         uint32_t n = count - begin < PIECE_RAYS ? (uint32_t)(count - begin) : PIECE_RAYS;
         load_piece(&p, scene, origins, directions, t_max, begin, n);
-        kernels_of(scene)->any(&scene->geometry, &p.rays, p.hits.object, &context);
+        fl_trace_kernels(scene)->any(&scene->geometry, &p.rays, p.hits.object, &context);
         for (uint32_t i = 0; i < n; i++)
             out_blocked[begin + i] = p.hits.object[i];
     }
     add_counts(counts, &context);
-    piece_deinit(&p);
+    fl_piece_deinit(&p);
     return true;
+}
+
+void fl_trace_stream_nearest(const fl_compiled *scene, const fl_rays *rays, fl_hits *out_hits,
+                             fl_isect_counts *counts)
+{
+    fl_isect_context context = {0};
+    fl_trace_kernels(scene)->nearest(&scene->geometry, rays, out_hits, &context);
+    add_counts(counts, &context);
+}
+
+void fl_trace_stream_any(const fl_compiled *scene, const fl_rays *rays, uint32_t *out_blocked,
+                         fl_isect_counts *counts)
+{
+    fl_isect_context context = {0};
+    fl_trace_kernels(scene)->any(&scene->geometry, rays, out_blocked, &context);
+    add_counts(counts, &context);
 }

@@ -140,7 +140,7 @@ static bool read_block(const char *text, size_t text_bytes, fl_camera *camera)
     memcpy(whole + prefix, text, text_bytes);
     fl_diags diags = {0};
     fl_scene *scene = fl_scene_parse(whole, prefix + text_bytes, "camera", &(fl_parse_options){0},
-                                     &fl_files_on_disk, &diags);
+                                     NULL, &diags); /* a camera is no reason to open files */
     free(whole);
     fl_diags_deinit(&diags);
     bool is_found = scene && (scene->has_camera || scene->view_count > 0);
@@ -178,9 +178,17 @@ static const struct {
     const char *name;
     int count;
 } rows[] = {
-    {"size", 2},           {"crop", 4},        {"depth", 1}, {"lightSamples", 1},
-    {"lightDefault", 1},   {"threshold", 1},   {"transparentShadows", 1},
-    {"sampler", 1},        {"seed", 1},        {"solver", 1}, {"exact", 1},
+    {"size", 2},
+    {"crop", 4},
+    {"depth", 1},
+    {"lightSamples", 1},
+    {"lightDefault", 1},
+    {"threshold", 1},
+    {"transparentShadows", 1},
+    {"sampler", 1},
+    {"seed", 1},
+    {"solver", 1},
+    {"exact", 1},
     {"dialect", 1},
 };
 
@@ -208,8 +216,8 @@ static void settings_text(const settings *s, char *out, size_t out_bytes)
     size_t length = 0;
     out[0] = 0;
     for (size_t i = 0; i < FL_COUNT_OF(rows) && length < out_bytes; i++) {
-        length += length_of(snprintf(out + length, out_bytes - length, "%s%s", length ? " " : "",
-                                     rows[i].name));
+        length += length_of(
+            snprintf(out + length, out_bytes - length, "%s%s", length ? " " : "", rows[i].name));
         for (int k = 0; k < rows[i].count && length < out_bytes; k++) {
             char text[NUMBER_BYTES];
             number(*value++, text);
@@ -249,9 +257,12 @@ void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, fl_dialect
     fl_digest_sha256(mean_rgb, (size_t)progress->width * progress->height * 3 * sizeof *mean_rgb,
                      out->film_sha256);
     const fl_image_text items[FL_STATE_TEXTS] = {
-        {"firstlight:scene", scene_path},        {"firstlight:view", out->view},
-        {"firstlight:settings", out->settings},  {"firstlight:camera", out->options},
-        {"firstlight:samples", out->samples},    {"firstlight:rmse", out->error},
+        {"firstlight:scene", scene_path},
+        {"firstlight:view", out->view},
+        {"firstlight:settings", out->settings},
+        {"firstlight:camera", out->options},
+        {"firstlight:samples", out->samples},
+        {"firstlight:rmse", out->error},
         {"firstlight:film_sha256", out->film_sha256},
     };
     memcpy(out->items, items, sizeof items);
@@ -287,14 +298,14 @@ static char *find_scene(const char *image_path, const char *scene)
     return path;
 }
 
-static bool read_state(const char *path, char *const texts[4], fl_saved_state *out,
-                       fl_diags *diags)
+static bool read_state(const char *path, char *const texts[4], fl_saved_state *out, fl_diags *diags)
 {
     fl_loc loc = {.file = path};
     settings s;
     double samples;
     if (!texts[0] || !texts[1] || !texts[2] || !texts[3])
-        return fl_error(diags, loc, "this picture does not say how it was made: no firstlight keys");
+        return fl_error(diags, loc,
+                        "this picture does not say how it was made: no firstlight keys");
     const char *end = texts[3] + strlen(texts[3]);
     if (!fl_camera_read_text(texts[1], strlen(texts[1]), &out->params.camera) ||
         !settings_read(texts[2], &s) || !fl_number_parse(texts[3], end, &samples) ||
@@ -319,14 +330,14 @@ static bool read_state(const char *path, char *const texts[4], fl_saved_state *o
     out->dialect = (fl_dialect)s.dialect;
     out->samples = (uint32_t)samples;
     out->scene_path = find_scene(path, texts[0]);
-    return out->scene_path || fl_error(diags, loc, "the scene of this picture is not here: '%s'",
-                                       texts[0]);
+    return out->scene_path ||
+           fl_error(diags, loc, "the scene of this picture is not here: '%s'", texts[0]);
 }
 
 bool fl_saved_state_load(const char *path, fl_saved_state *out, fl_diags *diags)
 {
-    static const char *const keys[] = {"firstlight:scene", "firstlight:view",
-                                       "firstlight:settings", "firstlight:samples"};
+    static const char *const keys[] = {"firstlight:scene", "firstlight:view", "firstlight:settings",
+                                       "firstlight:samples"};
     char *texts[FL_COUNT_OF(keys)] = {0};
     bool is_fine = true;
     *out = (fl_saved_state){0};

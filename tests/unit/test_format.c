@@ -110,8 +110,8 @@ static void test_layout(void **state)
 static void test_empty(void **state)
 {
     (void)state;
-    assert_formats_to("", "firstlight 1\n");
-    assert_formats_to("# only this", "firstlight 1\n# only this\n");
+    assert_formats_to("firstlight 1", "firstlight 1\n");
+    assert_formats_to("firstlight 1\n  # only this", "firstlight 1\n# only this\n");
 }
 
 static void test_courses_in_our_words(void **state)

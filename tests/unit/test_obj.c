@@ -95,8 +95,8 @@ static void every_layout_of_text_gives_the_same_mesh(void **state)
         "v\t0\t0  0\n  v  15E-1 0 0\nv 0 -.25 0.1e-2\nf\t1 2\t3 ",
         "\xEF\xBB\xBFv 0 0 0 # a comment\n#v 9 9 9\n\nv 1.5 0 0#x\nv 0 -.25 .001\nf 1 2 3 # end",
         "v 0 \\\n0 0\nv 1.5 0 \\\r\n 0\nv 0 -.25 1e-3\nf 1 2\\\n 3",
-        "mtllib a.mtl\no b\nv 0 0 0 1\nv 1.5 0 0 0.1 0.2 0.3\nv 0 -.25 1e-3\ng a\ns off\nvp 0.1 "
-        "0.2\nl 1 2\nfoo \\\nv 7 7 7\nf 1 2 3\nend",
+        ("mtllib a.mtl\no b\nv 0 0 0 1\nv 1.5 0 0 0.1 0.2 0.3\nv 0 -.25 1e-3\ng a\ns off\nvp 0.1 "
+         "0.2\nl 1 2\nfoo \\\nv 7 7 7\nf 1 2 3\nend"),
     };
     for (size_t i = 0; i < FL_COUNT_OF(texts); i++) {
         fl_mesh *mesh = parse(texts[i]);

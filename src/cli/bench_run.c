@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/bench_run.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+static double seconds_of(clockid_t clock)
+{
+    struct timespec t;
+    clock_gettime(clock, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double bench_thread_seconds(void)
+{
+    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
+}
+
+double bench_wall_seconds(void)
+{
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+static int ascending(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bench_figure bench_figure_of(double *values, uint32_t count)
+{
+    qsort(values, count, sizeof *values, ascending);
+    double middle = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
+    return (bench_figure){middle, values[0], values[count - 1]};
+}
+
+/* --- Rows ------------------------------------------------------------------------------------ */
+
+typedef struct row {
+    const bench_mesh *mesh;
+    const char *kind;
+    double mrays, ns, node_visits, primitive_tests; /* The last two a ray. */
+    const char *peer, *peer_mode;                   /* peer NULL: nobody. */
+    double peer_mrays;
+    bench_figure ratio;
+    uint32_t mismatches;
+} row;
+
+static void add_row(const bench_setup *setup, const row *r)
+{
+    if (!setup->rows) {
+        printf("%-12s %8u  %-12s %8.2f M/s %7.2f nodes %7.2f tests", r->mesh->name, r->mesh->face_count, r->kind,
+               r->mrays, r->node_visits, r->primitive_tests);
+        if (r->peer)
+            printf("  %s %-22s %8.2f M/s  ratio %.2f (%.2f to %.2f), %u differ", r->peer, r->peer_mode, r->peer_mrays,
+                   r->ratio.median, r->ratio.min, r->ratio.max, r->mismatches);
+        putchar('\n');
+        fflush(stdout);
+        return;
+    }
+    json_t *line = json_pack("{s:s, s:I, s:s, s:f, s:f, s:f}", "mesh", r->mesh->name, "triangles",
+                             (json_int_t)r->mesh->face_count, "kind", r->kind, "mrays", r->mrays, "node_visits",
+                             r->node_visits, "primitive_tests", r->primitive_tests);
+    json_t *peer = r->peer ? json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:I}", "peer", r->peer, "peer_mode",
+                                       r->peer_mode, "peer_mrays", r->peer_mrays, "ratio", r->ratio.median,
+                                       "ratio_min", r->ratio.min, "ratio_max", r->ratio.max, "mismatches",
+                                       (json_int_t)r->mismatches)
+                           : json_pack("{s:n}", "peer");
+    json_object_update(line, peer);
+    json_decref(peer);
+    json_array_append_new(setup->rows, line);
+}
+
+/* --- One kind of ray ------------------------------------------------------------------------- */
+
+/* The other tracer with a scene for each of its two ways to build. */
+typedef struct opponent {
+    const bench_peer *peer;
+    void *scene[2]; /* As fast as it goes; robust. */
+} opponent;
+
+/* One way of the opponent to trace the rays at hand. */
+typedef struct contender {
+    void *scene, *set;
+    uint32_t mode;
+    bool is_robust;
+    double seconds[BENCH_ROUNDS_MAX];
+} contender;
+
+static double time_peer(const bench_peer *peer, const contender *c)
+{
+    peer->reset(c->set);
+    double begin = bench_thread_seconds();
+    peer->trace(c->scene, c->set);
+    return bench_thread_seconds() - begin;
+}
+
+static double time_ours(const fl_compiled *scene, bench_rays *rays)
+{
+    double begin = bench_thread_seconds();
+    bench_rays_trace(scene, rays, NULL);
+    return bench_thread_seconds() - begin;
+}
+
+/* The mode with the best of three runs, loaded. False: out of memory. */
+static bool choose_mode(const opponent *o, bool is_robust, const bench_rays *rays, contender *out)
+{
+    double best = HUGE_VAL;
+    *out = (contender){.scene = o->scene[is_robust], .is_robust = is_robust};
+    for (uint32_t mode = 0; mode < o->peer->mode_count; mode++) {
+        contender c = {.scene = out->scene, .mode = mode, .is_robust = is_robust};
+        c.set = o->peer->load(&rays->rays, mode, rays->kind == BENCH_SHADOW);
+        if (!c.set)
+            return false;
+        double seconds = HUGE_VAL;
+        for (int k = 0; k < 3; k++)
+            seconds = fmin(seconds, time_peer(o->peer, &c));
+        if (seconds < best) {
+            best = seconds;
+            o->peer->unload(out->set);
+            *out = c;
+        } else {
+            o->peer->unload(c.set);
+        }
+    }
+    return true;
+}
+
+/* Rays whose answers differ: one hits and the other does not, or the distances do. Another face at the same distance
+ * is a common edge. */
+static uint32_t count_mismatches(const bench_peer *peer, const contender *c, const bench_rays *rays)
+{
+    uint32_t count = 0, face;
+    for (uint32_t i = 0; i < rays->rays.count; i++) {
+        float theirs = peer->result(c->set, i, &face);
+        if (rays->kind == BENCH_SHADOW) {
+            count += (theirs == 0.0f) != (rays->blocked[i] != 0);
+            continue;
+        }
+        float ours = rays->hits.t[i];
+        count += isinf(ours) != isinf(theirs) ||
+                 (!isinf(ours) && fabsf(ours - theirs) > 1e-3f * (1.0f + fabsf(ours)));
+    }
+    return count;
+}
+
+static bool run_kind(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene, const opponent *o,
+                     bench_rays *rays)
+{
+    contender other[2];
+    uint32_t others = o->peer ? 2 : 0, rounds = setup->rounds;
+    for (uint32_t k = 0; k < others; k++)
+        if (!choose_mode(o, k == 1, rays, &other[k]))
+            return fl_out_of_memory(setup->diags, "rays to compare with");
+    double ours[BENCH_ROUNDS_MAX], sorted[BENCH_ROUNDS_MAX];
+    fl_isect_counts counts = {0};
+    bench_rays_trace(scene, rays, &counts);
+    for (uint32_t r = 0; r < rounds; r++) {
+        ours[r] = time_ours(scene, rays);
+        for (uint32_t k = 0; k < others; k++)
+            other[k].seconds[r] = time_peer(o->peer, &other[k]);
+    }
+    memcpy(sorted, ours, sizeof sorted);
+    double n = rays->rays.count, mine = bench_figure_of(sorted, rounds).median;
+    row line = {.mesh = mesh,
+                .kind = bench_kind_names[rays->kind],
+                .mrays = n / mine * 1e-6,
+                .node_visits = (double)counts.node_visits / n,
+                .primitive_tests = (double)counts.primitive_tests / n};
+    if (!others)
+        add_row(setup, &line);
+    for (uint32_t k = 0; k < others; k++) {
+        char mode[64];
+        double ratio[BENCH_ROUNDS_MAX];
+        for (uint32_t r = 0; r < rounds; r++)
+            ratio[r] = other[k].seconds[r] / ours[r];
+        snprintf(mode, sizeof mode, "%s%s", o->peer->modes[other[k].mode], k ? " robust" : "");
+        line.peer = o->peer->name;
+        line.peer_mode = mode;
+        line.ratio = bench_figure_of(ratio, rounds);
+        line.mismatches = count_mismatches(o->peer, &other[k], rays);
+        line.peer_mrays = n / bench_figure_of(other[k].seconds, rounds).median * 1e-6;
+        add_row(setup, &line);
+        o->peer->unload(other[k].set);
+    }
+    return true;
+}
+
+static bool run_kinds(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene, const opponent *o)
+{
+    bench_rays primary = {0}, rays = {0};
+    bool ok = true;
+    for (int kind = 0; ok && kind < BENCH_KIND_COUNT; kind++) {
+        bench_rays *now = kind == BENCH_PRIMARY ? &primary : &rays;
+        ok = bench_rays_create(mesh, scene, (bench_kind)kind, setup->side, &primary, now) ||
+             fl_out_of_memory(setup->diags, "rays to measure with");
+        ok = ok && run_kind(setup, mesh, scene, o, now);
+        if (kind != BENCH_PRIMARY)
+            bench_rays_deinit(&rays);
+    }
+    bench_rays_deinit(&primary);
+    return ok;
+}
+
+/* --- Building -------------------------------------------------------------------------------- */
+
+/* Both build again and again, in turn; the last of each stay. */
+static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compiled **out_scene, opponent *o)
+{
+    double ours[BENCH_ROUNDS_MAX], theirs[BENCH_ROUNDS_MAX], ratio[BENCH_ROUNDS_MAX];
+    uint32_t rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
+    for (uint32_t r = 0; r < rounds; r++) {
+        fl_compiled_release(*out_scene);
+        double begin = bench_thread_seconds();
+        *out_scene = bench_mesh_compile(mesh, &setup->compile, NULL, setup->diags);
+        if (!*out_scene)
+            return false;
+        ours[r] = bench_thread_seconds() - begin;
+        if (!o->peer)
+            continue;
+        o->peer->destroy(o->scene[0]);
+        o->scene[0] = o->peer->build(mesh->position, mesh->position_count, mesh->index, mesh->face_count, false, 1,
+                                     &theirs[r]);
+        if (!o->scene[0])
+            return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
+        ratio[r] = theirs[r] / ours[r];
+    }
+    double n = mesh->face_count;
+    row line = {.mesh = mesh, .kind = "build", .mrays = n / bench_figure_of(ours, rounds).median * 1e-6};
+    if (o->peer) {
+        double seconds;
+        line.peer = o->peer->name;
+        line.peer_mode = "medium";
+        line.peer_mrays = n / bench_figure_of(theirs, rounds).median * 1e-6;
+        line.ratio = bench_figure_of(ratio, rounds);
+        o->scene[1] = o->peer->build(mesh->position, mesh->position_count, mesh->index, mesh->face_count, true, 1,
+                                     &seconds);
+        if (!o->scene[1])
+            return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
+    }
+    add_row(setup, &line);
+    return true;
+}
+
+bool bench_mesh_run(const bench_setup *setup, const bench_mesh *mesh)
+{
+    opponent o = {.peer = setup->peer};
+    fl_compiled *scene = NULL;
+    bool ok = run_build(setup, mesh, &scene, &o) && run_kinds(setup, mesh, scene, &o);
+    for (int k = 0; o.peer && k < 2; k++)
+        o.peer->destroy(o.scene[k]);
+    fl_compiled_release(scene);
+    return ok;
+}

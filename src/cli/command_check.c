@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+#include <dirent.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "cli/commands.h"
+#include "cli/picture.h"
+#include "cli/report.h"
+#include "io/files.h"
+#include "io/image_file.h"
+
+/* Golden pictures: small enough to check in a second, large enough to show every feature. A scene that asks for fewer samples
+ * gets no more. */
+enum { GOLDEN_SIDE = 160, GOLDEN_SAMPLES = 16, PATH_BYTES = 4096 };
+
+typedef struct checker {
+    const cli_options *options;
+    cli_report *report; /* NULL: none asked for */
+    uint32_t passed_count, failed_count;
+    int code; /* worst exit code of a scene that could not be rendered */
+} checker;
+
+/* "dir/name.txt" to "dir/name" + suffix. */
+static void beside(const char *scene, const char *suffix, char out[PATH_BYTES])
+{
+    const char *dot = strrchr(scene, '.'), *slash = strrchr(scene, '/');
+    int stem = dot && (!slash || dot > slash) ? (int)(dot - scene) : (int)strlen(scene);
+    snprintf(out, PATH_BYTES, "%.*s%s", stem, scene, suffix);
+}
+
+static bool write_golden(const char *path, const cli_scene *scene, const cli_picture *picture, fl_diags *diags)
+{
+    char name[PATH_BYTES], line[FL_SHA256_HEX + 2];
+    beside(path, ".png", name);
+    if (!cli_picture_save(picture, scene, name, diags))
+        return false;
+    beside(path, ".sha256", name);
+    int bytes = snprintf(line, sizeof line, "%s\n", picture->film_sha256);
+    return fl_file_save(name, line, (size_t)bytes, diags);
+}
+
+/* The stored hash, or "" where there is none. */
+static void read_golden_hash(const char *path, char out[FL_SHA256_HEX + 1])
+{
+    char name[PATH_BYTES];
+    beside(path, ".sha256", name);
+    fl_diags quiet = {0};
+    size_t bytes;
+    char *text = fl_file_load(name, "golden hash", 4096, (fl_loc){.file = name}, &quiet, &bytes);
+    snprintf(out, FL_SHA256_HEX + 1, "%.*s", FL_SHA256_HEX, text ? text : "");
+    free(text);
+    fl_diags_deinit(&quiet);
+}
+
+/* Fill the numbers of `result` by comparing with the golden picture; returns it or NULL. */
+static fl_image *compare_picture(const char *path, const cli_picture *picture, const uint8_t *fresh,
+                                 cli_check_result *result)
+{
+    char name[PATH_BYTES];
+    beside(path, ".png", name);
+    fl_diags quiet = {0};
+    fl_image *golden = fl_image_load(name, (fl_loc){.file = name}, &quiet);
+    fl_diags_deinit(&quiet);
+    if (!golden || golden->format == FL_PIXEL_FLOAT || golden->width != picture->width ||
+        golden->height != picture->height) {
+        fl_image_release(golden);
+        return NULL;
+    }
+    const uint8_t *old = golden->pixels;
+    size_t pixels = (size_t)picture->width * picture->height, differing = 0;
+    for (size_t i = 0; i < pixels; i++) {
+        uint32_t largest = 0;
+        for (size_t c = 3 * i; c < 3 * i + 3; c++)
+            largest = fl_max_u32(largest, (uint32_t)abs(old[c] - fresh[c]));
+        differing += largest > 0;
+        result->largest_difference = fl_max_u32(result->largest_difference, largest);
+    }
+    result->differing_share = (double)differing / (double)pixels;
+    return golden;
+}
+
+static void compare(checker *check, const char *path, cli_scene *scene, const cli_picture *picture)
+{
+    cli_check_result result = {.passed = true, .why = "same bytes"};
+    const char *slash = strrchr(path, '/');
+    snprintf(result.name, sizeof result.name, "%s", slash ? slash + 1 : path);
+    if (strrchr(result.name, '.'))
+        *strrchr(result.name, '.') = 0;
+    read_golden_hash(path, result.sha256_golden);
+    snprintf(result.sha256_new, sizeof result.sha256_new, "%s", picture->film_sha256);
+    if (picture->progress.counts.invalid_samples) {
+        result.passed = false;
+        result.why = "invalid samples";
+    } else if (!result.sha256_golden[0]) {
+        result.passed = false;
+        result.why = "no golden hash (firstlight check --update writes one)";
+    } else if (strcmp(result.sha256_golden, result.sha256_new) != 0) {
+        result.passed = false;
+        result.why = "film differs from the golden one";
+    }
+    uint8_t *fresh = cli_picture_bytes(picture, &scene->params, scene->diags);
+    if (fresh && (!result.passed || check->report)) {
+        fl_image *golden = compare_picture(path, picture, fresh, &result);
+        if (check->report)
+            cli_report_add(check->report, &result, picture->width, picture->height, golden ? golden->pixels : NULL,
+                           fresh, scene->diags);
+        fl_image_release(golden);
+    }
+    free(fresh);
+    check->passed_count += result.passed;
+    check->failed_count += !result.passed;
+    if (!result.passed)
+        printf("FAIL %s: %s (largest difference %u/255, %.3f %% of pixels)\n", path, result.why,
+               result.largest_difference, 100.0 * result.differing_share);
+    else if (!cli_has(check->options, CLI_OPT_QUIET))
+        printf("ok   %s\n", path);
+}
+
+static void check_scene(checker *check, const char *path)
+{
+    fl_diags diags = {0};
+    cli_scene scene = {.diags = &diags};
+    cli_picture picture = {0};
+    if (cli_scene_open(check->options, path, &scene)) {
+        const fl_render_block *render = &scene.scene->render;
+        fl_render_limits limits = {.samples = GOLDEN_SAMPLES};
+        if (render->has_samples)
+            limits.samples = fl_min_u32(limits.samples, render->samples);
+        scene.params.width = scene.params.height = GOLDEN_SIDE;
+        if (cli_picture_render(&scene, &limits, check->options->threads, NULL, &picture) && !picture.was_interrupted) {
+            if (!cli_has(check->options, CLI_OPT_UPDATE)) {
+                compare(check, path, &scene, &picture);
+            } else if (write_golden(path, &scene, &picture, &diags)) {
+                check->passed_count++;
+                printf("wrote golden of %s\n", path);
+            }
+        }
+    }
+    cli_print_diags(&diags);
+    int code = cli_exit_code(&diags);
+    check->code = code > check->code ? code : check->code;
+    cli_picture_close(&picture);
+    cli_scene_close(&scene);
+    fl_diags_deinit(&diags);
+}
+
+static int is_scene_name(const struct dirent *entry)
+{
+    const char *dot = strrchr(entry->d_name, '.');
+    return dot && strcmp(dot, ".txt") == 0;
+}
+
+/* Every .txt of a folder, by name. False: not a folder. */
+static bool check_folder(checker *check, const char *path)
+{
+    struct dirent **entries;
+    int count = scandir(path, &entries, is_scene_name, alphasort);
+    if (count < 0)
+        return false;
+    for (int i = 0; i < count; i++) {
+        char name[PATH_BYTES];
+        snprintf(name, sizeof name, "%s/%s", path, entries[i]->d_name);
+        if (!cli_was_interrupted())
+            check_scene(check, name);
+        free(entries[i]);
+    }
+    free(entries);
+    return true;
+}
+
+int cli_command_check(const cli_options *options)
+{
+    if (!options->path_count)
+        return cli_usage_error(CLI_CHECK, "expected scenes or folders of scenes");
+    fl_diags diags = {0};
+    checker check = {.options = options};
+    if (options->report && !(check.report = cli_report_open(options->report, &diags)))
+        check.code = CLI_ENVIRONMENT;
+    cli_catch_signals();
+    for (uint32_t i = 0; i < options->path_count && !cli_was_interrupted() && !diags.error_count; i++) {
+        struct stat info;
+        bool is_folder = stat(options->paths[i], &info) == 0 && S_ISDIR(info.st_mode);
+        if (!is_folder || !check_folder(&check, options->paths[i]))
+            check_scene(&check, options->paths[i]);
+    }
+    cli_report_close(check.report, &diags);
+    cli_print_diags(&diags);
+    if (diags.error_count && check.code == CLI_DONE)
+        check.code = CLI_ENVIRONMENT;
+    if (cli_has(options, CLI_OPT_JSON))
+        printf("{\"passed\":%u,\"failed\":%u}\n", check.passed_count, check.failed_count);
+    else
+        printf("%u passed, %u failed\n", check.passed_count, check.failed_count);
+    fl_diags_deinit(&diags);
+    if (cli_was_interrupted())
+        return CLI_INTERRUPTED;
+    if (check.code != CLI_DONE)
+        return check.code;
+    return check.failed_count ? CLI_CHECK_FAILED : CLI_DONE;
+}

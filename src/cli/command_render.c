@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+#include <jansson.h>
+#include <stdio.h>
+
+#include "cli/commands.h"
+#include "cli/picture.h"
+#include "io/image_file.h"
+
+/* One line for programs: the keys are binding (docs/cli.md). */
+static void print_json(const cli_scene *scene, const cli_picture *picture)
+{
+    const fl_progress *p = &picture->progress;
+    const fl_counts *c = &p->counts;
+    json_t *needs = json_array();
+    for (uint32_t i = 0; i < FL_NEED_COUNT; i++)
+        if (scene->compiled->needs >> i & 1u)
+            json_array_append_new(needs, json_string(fl_need_names[i]));
+    json_t *rmse = p->error.is_known ? json_pack("{s:f, s:f, s:f}", "estimate", p->error.rmse, "low", p->error.low,
+                                                 "high", p->error.high)
+                                     : json_pack("{s:n, s:n, s:n}", "estimate", "low", "high");
+    json_t *line = json_pack(
+        "{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
+        scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)p->complete_samples,
+        "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
+        "first_sample_seconds", p->first_sample_seconds, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
+        (json_int_t)c->shadow_rays, "reflect", (json_int_t)c->reflect_rays, "refract", (json_int_t)c->refract_rays,
+        "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
+        (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "interrupted",
+        (int)picture->was_interrupted, "film_sha256", picture->film_sha256);
+    if (line) {
+        json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
+        putchar('\n');
+    }
+    json_decref(line);
+}
+
+static void print_summary(const cli_picture *picture)
+{
+    const fl_progress *p = &picture->progress;
+    const fl_counts *c = &p->counts;
+    double rays = (double)(c->camera_rays + c->shadow_rays + c->reflect_rays + c->refract_rays);
+    printf("%ux%u, %u samples in %.2f s (first picture %.3f s, first full sample %.3f s), %.1f Mray/s", picture->width,
+           picture->height, p->complete_samples, p->seconds, p->first_picture_seconds, p->first_sample_seconds,
+           p->seconds > 0.0 ? rays / p->seconds * 1e-6 : 0.0);
+    if (p->error.is_known)
+        printf(", error about %.4f (%.4f to %.4f)", p->error.rmse, p->error.low, p->error.high);
+    if (c->invalid_samples)
+        printf(", %llu INVALID samples dropped", (unsigned long long)c->invalid_samples);
+    if (c->dropped_branches)
+        printf(", %llu branches dropped", (unsigned long long)c->dropped_branches);
+    putchar('\n');
+}
+
+/* Refuse names that no format has before an hour of rendering, not after. */
+static bool outputs_are_writable(const cli_options *options, fl_diags *diags)
+{
+    fl_pixel_format format;
+    uint32_t kinds;
+    if (options->aov && !cli_aov_parse(options->aov, &kinds, diags))
+        return false;
+    for (uint32_t i = 0; i < options->output_count; i++)
+        if (!fl_image_format_for(options->outputs[i], diags, &format))
+            return false;
+    return true;
+}
+
+int cli_command_render(const cli_options *options)
+{
+    if (options->path_count != 1)
+        return cli_usage_error(CLI_RENDER, "expected one scene, got %u", options->path_count);
+    if (!options->output_count && !cli_has(options, CLI_OPT_JSON))
+        return cli_usage_error(CLI_RENDER, "nowhere to write: give -o IMAGE or --json");
+    cli_catch_signals();
+    fl_diags diags = {0};
+    cli_scene scene = {.diags = &diags};
+    cli_picture picture = {0};
+    if (outputs_are_writable(options, &diags) && cli_scene_open(options, options->paths[0], &scene)) {
+        fl_render_limits limits = {.samples = cli_sample_limit(options, &scene),
+                                   .noise_rmse = options->noise,
+                                   .seconds = options->time_s};
+        bool is_quiet = cli_has(options, CLI_OPT_QUIET);
+        if (cli_picture_render(&scene, &limits, options->threads, is_quiet ? NULL : scene.path, &picture)) {
+            bool ok = true;
+            for (uint32_t i = 0; i < options->output_count; i++)
+                ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;
+            if (options->aov && options->output_count)
+                ok = cli_aov_save(&scene, options->aov, options->outputs[0], &diags) && ok;
+            if (cli_has(options, CLI_OPT_JSON))
+                print_json(&scene, &picture);
+            else if (!is_quiet)
+                print_summary(&picture);
+        }
+    }
+    cli_print_diags(&diags);
+    int code = cli_exit_code(&diags);
+    if (code == CLI_DONE && picture.was_interrupted)
+        code = CLI_INTERRUPTED;
+    cli_picture_close(&picture);
+    cli_scene_close(&scene);
+    fl_diags_deinit(&diags);
+    return code;
+}

@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "cli/commands.h"
+#include "cli/study_write.h"
+
+enum { SIDE_DEFAULT = 128, SAMPLES_DEFAULT = 64, REPEATS_DEFAULT = 4 };
+
+/* A study renders every setting many times: unless a size is asked for, the scene's is shrunk. */
+static void shrink(fl_params *params)
+{
+    uint32_t longer = fl_max_u32(params->width, params->height);
+    if (longer <= SIDE_DEFAULT)
+        return;
+    params->width = fl_max_u32(1, params->width * SIDE_DEFAULT / longer);
+    params->height = fl_max_u32(1, params->height * SIDE_DEFAULT / longer);
+}
+
+static uint32_t power_of_two_below(uint32_t x)
+{
+    uint32_t power = 1;
+    while (power <= x / 2)
+        power *= 2;
+    return power;
+}
+
+/* The words that repeat this study, for the files. */
+static void write_command(const cli_options *o, const cli_scene *scene, uint32_t samples,
+                          uint32_t repeats, FILE *file)
+{
+    const fl_params *p = &scene->params;
+    fprintf(file, "firstlight study %s --size %ux%u --samples %u --repeats %u", scene->path,
+            p->width, p->height, samples, repeats);
+    if (cli_has(o, CLI_OPT_DEPTH))
+        fprintf(file, " --depth %u", o->depth);
+    if (cli_has(o, CLI_OPT_LIGHT_SAMPLES))
+        fprintf(file, " --light-samples %u", o->light_samples);
+    if (cli_has(o, CLI_OPT_WEIGHT_THRESHOLD))
+        fprintf(file, " --weight-threshold %g", o->weight_threshold);
+    if (cli_has(o, CLI_OPT_APERTURE))
+        fprintf(file, " --aperture %.9g", o->aperture);
+    if (cli_has(o, CLI_OPT_FOCUS))
+        fprintf(file, " --focus %.9g", o->focus);
+    if (cli_has(o, CLI_OPT_SEED))
+        fprintf(file, " --seed %u", o->seed);
+    if (cli_has(o, CLI_OPT_CAMERA)) {
+        fputs(" --camera '", file);
+        for (uint32_t i = 0; i < FL_COUNT_OF(o->camera); i++)
+            fprintf(file, "%s%.9g", i ? " " : "", o->camera[i]);
+        fputc('\'', file);
+    }
+    if (cli_has(o, CLI_OPT_BUDGET))
+        fprintf(file, " --budget %g", o->budget_s);
+    if (cli_has(o, CLI_OPT_SWEEP))
+        fprintf(file, " --sweep %s", o->sweep);
+    fprintf(file, " --out %s", o->out_dir);
+}
+
+static void print_summary(const study_report *report)
+{
+    const study *s = report->s;
+    double targets[8];
+    uint32_t count = study_targets(report->table, report->wanted_rmse, targets);
+    for (uint32_t i = 0; i < count; i++) {
+        char sentence[320];
+        study_sentence(s, report->table, targets[i], sentence, sizeof sentence);
+        puts(sentence);
+    }
+    const study_reference *truth = study_truth(s);
+    printf("%u settings, %u complete rounds, %.0f s; reference RMSE %.2g%s; written to %s\n",
+           s->plan.count, s->rounds, s->seconds, truth->rmse,
+           truth->rmse <= 0.1 * truth->best ? "" : " (not down to a tenth of the best measured)",
+           report->dir);
+}
+
+static bool report(const cli_options *o, cli_scene *scene, const study *s, const study_table *table,
+                   const char *command)
+{
+    study_report out = {
+        .s = s, .table = table, .dir = o->out_dir, .command = command, .wanted_rmse = o->noise};
+    if (!study_write(&out, scene->diags))
+        return false;
+    json_t *json = cli_has(o, CLI_OPT_JSON) ? study_json(&out) : NULL;
+    if (json) {
+        json_dumpf(json, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
+        putchar('\n');
+    } else if (!cli_has(o, CLI_OPT_QUIET)) {
+        print_summary(&out);
+    }
+    json_decref(json);
+    return true;
+}
+
+static bool run(const cli_options *o, cli_scene *scene, uint32_t knobs, study *s)
+{
+    uint32_t samples = cli_has(o, CLI_OPT_SAMPLES) ? o->samples : SAMPLES_DEFAULT;
+    study_settings settings = {
+        .samples_max = power_of_two_below(fl_min_u32(samples, 1u << (STUDY_LEVELS_MAX - 1))),
+        .repeats = cli_has(o, CLI_OPT_REPEATS) ? o->repeats : REPEATS_DEFAULT,
+        .threads = o->threads,
+        .budget_s = o->budget_s,
+        .shows_progress = !cli_has(o, CLI_OPT_QUIET),
+        .should_stop = cli_was_interrupted};
+    if (!study_run(scene, &settings, knobs, s))
+        return false;
+    char *command = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&command, &bytes);
+    study_table *table = study_table_create(s);
+    bool ok = file != NULL;
+    if (file) {
+        write_command(o, scene, settings.samples_max, settings.repeats, file);
+        ok = fclose(file) == 0;
+    }
+    ok = ok && table ? report(o, scene, s, table, command)
+                     : fl_out_of_memory(scene->diags, "the table");
+    free(command);
+    free(table);
+    return ok;
+}
+
+int cli_command_study(const cli_options *options)
+{
+    if (options->path_count != 1)
+        return cli_usage_error(CLI_STUDY, "expected one scene, got %u", options->path_count);
+    if (!options->out_dir)
+        return cli_usage_error(CLI_STUDY, "nowhere to write: give --out DIR");
+    uint32_t knobs = ~0u;
+    char word[STUDY_NAME_BYTES];
+    if (options->sweep && !study_knobs_parse(options->sweep, &knobs, word))
+        return cli_usage_error(CLI_STUDY,
+                               "unknown knob '%s' in --sweep; there are sampler, light-samples, "
+                               "depth, weight-threshold, scale, accel, revolve-solver",
+                               word);
+    cli_catch_signals();
+    fl_diags diags = {0};
+    cli_scene scene = {.diags = &diags};
+    study s = {0};
+    if (cli_scene_open(options, options->paths[0], &scene)) {
+        if (!cli_has(options, CLI_OPT_SIZE))
+            shrink(&scene.params);
+        run(options, &scene, knobs, &s);
+    }
+    cli_print_diags(&diags);
+    int code = cli_exit_code(&diags);
+    if (code == CLI_DONE && s.was_interrupted)
+        code = CLI_INTERRUPTED;
+    study_close(&s);
+    cli_scene_close(&scene);
+    fl_diags_deinit(&diags);
+    return code;
+}

@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/load.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "io/files.h"
+
+static volatile sig_atomic_t interrupted;
+
+static void on_signal(int number)
+{
+    interrupted = 1;
+    signal(number, SIG_DFL);
+}
+
+void cli_catch_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    for (size_t i = 0; i < FL_COUNT_OF(numbers); i++) {
+        struct sigaction action = {.sa_handler = on_signal};
+        sigemptyset(&action.sa_mask);
+        sigaction(numbers[i], &action, NULL);
+    }
+}
+
+bool cli_was_interrupted(void)
+{
+    return interrupted != 0;
+}
+
+void cli_print_diags(const fl_diags *diags)
+{
+    for (uint32_t i = 0; i < diags->count; i++) {
+        size_t bytes = fl_diag_format(&diags->items[i], NULL, 0) + 1;
+        char *text = malloc(bytes);
+        if (!text)
+            continue;
+        fl_diag_format(&diags->items[i], text, bytes);
+        fprintf(stderr, "%s\n", text);
+        free(text);
+    }
+    if (diags->dropped_count)
+        fprintf(stderr, "firstlight: %u more not shown\n", diags->dropped_count);
+}
+
+int cli_exit_code(const fl_diags *diags)
+{
+    int code = diags->error_count ? CLI_WRONG_INPUT : CLI_DONE;
+    for (uint32_t i = 0; i < diags->count; i++)
+        if (diags->items[i].severity == FL_ERROR && diags->items[i].cause == FL_CAUSE_ENVIRONMENT)
+            code = CLI_ENVIRONMENT;
+    return code;
+}
+
+bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *out)
+{
+    if (fl_saved_state_is_for(path)) {
+        if (!fl_saved_state_load(path, &out->state, out->diags))
+            return false;
+        path = out->state.scene_path;
+    }
+    bool is_reopened = out->state.scene_path != NULL;
+    out->path = path;
+    size_t bytes;
+    char *text = fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, out->diags, &bytes);
+    if (!text)
+        return false;
+    fl_parse_options parse = {.has_dialect = is_reopened || cli_has(options, CLI_OPT_DIALECT),
+                              .dialect = is_reopened ? out->state.dialect : (fl_dialect)options->dialect,
+                              .is_lenient = cli_has(options, CLI_OPT_LENIENT)};
+    out->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, out->diags);
+    free(text);
+    return out->scene != NULL;
+}
+
+static void apply_camera(const double value[10], fl_camera *camera)
+{
+    fl_vec3 eye = fl_v3(value[0], value[1], value[2]);
+    camera->projection = FL_PERSPECTIVE;
+    camera->center = eye;
+    camera->direction = fl_v3_sub(fl_v3(value[3], value[4], value[5]), eye);
+    camera->up = fl_v3(value[6], value[7], value[8]);
+    camera->fov_deg = value[9];
+}
+
+/* The options' values over the scene's. */
+static void apply_options(const cli_options *o, fl_params *params)
+{
+    if (cli_has(o, CLI_OPT_SIZE)) {
+        params->width = o->size[0];
+        params->height = o->size[1];
+    }
+    if (cli_has(o, CLI_OPT_CROP)) {
+        params->crop_x = o->crop[0];
+        params->crop_y = o->crop[1];
+        params->crop_w = o->crop[2];
+        params->crop_h = o->crop[3];
+    }
+    if (cli_has(o, CLI_OPT_CAMERA))
+        apply_camera(o->camera, &params->camera);
+    if (cli_has(o, CLI_OPT_APERTURE))
+        params->camera.aperture = o->aperture;
+    if (cli_has(o, CLI_OPT_FOCUS))
+        params->camera.focus = o->focus;
+    if (cli_has(o, CLI_OPT_EXPOSURE))
+        params->camera.exposure_ev = o->exposure_ev;
+    if (cli_has(o, CLI_OPT_LIGHT_SAMPLES))
+        params->light_samples = o->light_samples;
+    if (cli_has(o, CLI_OPT_DEPTH))
+        params->depth_limit = o->depth;
+    if (cli_has(o, CLI_OPT_WEIGHT_THRESHOLD))
+        params->weight_threshold = o->weight_threshold;
+    if (cli_has(o, CLI_OPT_SEED))
+        params->seed = o->seed;
+    if (cli_has(o, CLI_OPT_SAMPLER))
+        params->sampler = (fl_sampler)o->sampler;
+    if (cli_has(o, CLI_OPT_REVOLVE_SOLVER))
+        params->solver = (fl_revolve_solver)o->solver;
+}
+
+bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)
+{
+    if (!cli_scene_parse(options, path, out))
+        return false;
+    fl_pool *pool = fl_pool_create(options->threads, out->diags);
+    if (!pool)
+        return false;
+    fl_isa isa = FL_ISA_SCALAR;
+    bool names_isa = options->isa && fl_isa_find(options->isa, &isa);
+    fl_compile_options compile = {.accel = (fl_accel)options->accel,
+                                  .has_isa = names_isa,
+                                  .isa = isa,
+                                  .octree_height = options->octree_height};
+    out->compiled = fl_compile(out->scene, &compile, pool, out->diags);
+    fl_pool_destroy(pool);
+    if (!out->compiled)
+        return false;
+    fl_params_from_scene(&out->params, out->scene, out->state.is_exact || cli_has(options, CLI_OPT_DIALECT_EXACT));
+    if (out->state.scene_path)
+        fl_saved_state_apply(&out->state, &out->params);
+    apply_options(options, &out->params);
+    return fl_params_check(&out->params, out->diags);
+}
+
+void cli_scene_close(cli_scene *scene)
+{
+    fl_compiled_release(scene->compiled);
+    fl_scene_destroy(scene->scene);
+    fl_saved_state_deinit(&scene->state);
+    *scene = (cli_scene){.diags = scene->diags};
+}
+
+uint32_t cli_sample_limit(const cli_options *options, const cli_scene *scene)
+{
+    if (cli_has(options, CLI_OPT_SAMPLES))
+        return options->samples;
+    if (cli_has(options, CLI_OPT_TIME) || cli_has(options, CLI_OPT_NOISE))
+        return 0;
+    if (scene->state.samples)
+        return scene->state.samples;
+    return scene->scene->render.has_samples ? scene->scene->render.samples : FL_SAMPLES_DEFAULT;
+}

@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * From options to something that can be rendered; shared by the commands.
+ */
+#ifndef CLI_LOAD_H
+#define CLI_LOAD_H
+
+#include "cli/options.h"
+#include "io/state_text.h"
+
+/** A scene on its way to a picture. Zero-initialise but for `diags`; cli_scene_close frees whatever is there. */
+typedef struct cli_scene {
+    const char *path; /**< Of the scene's text: borrowed from the options, or the state's. */
+    fl_saved_state state; /**< Of the picture that was named in place of a scene; has a path only then. */
+    fl_scene *scene;
+    fl_compiled *compiled;
+    fl_params params; /**< Borrows lights from `scene`. */
+    fl_diags *diags;  /**< Borrowed: where everything wrong is said. */
+} cli_scene;
+
+/** Read and parse; true: out->scene is set. */
+bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *out);
+
+/** Read, parse, compile with all threads asked for, and set the parameters: scene, then the state of the picture that
+ *  `path` may name instead of a scene, then options (decision 19). */
+bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out);
+
+void cli_scene_close(cli_scene *scene);
+
+/** Print all diagnostics on standard error, most recent last, with a count of those dropped. */
+void cli_print_diags(const fl_diags *diags);
+
+/** Exit code for what the diagnostics say: 0 without errors, 4 if any error is the environment's, else 3. */
+int cli_exit_code(const fl_diags *diags);
+
+/** Samples to stop at: option, else the picture's, else Render block, else default (0 when only time or noise is to stop
+ *  it). */
+uint32_t cli_sample_limit(const cli_options *options, const cli_scene *scene);
+
+/** Set by SIGINT, SIGTERM and SIGHUP once cli_catch_signals was called; a second signal ends the program. */
+bool cli_was_interrupted(void);
+void cli_catch_signals(void);
+
+#endif

@@ -1,0 +1,287 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/tables.h"
+
+static const char *const sampler_names[] = {"sobol", "random", "padded", NULL};
+static const char *const solver_names[] = {"robust", "newton", NULL};
+static const char *const accel_names[] = {"bvh", "octree", "none", NULL};
+static const char *const isa_names[] = {"scalar", "sse2", "avx2", "neon", "auto", NULL};
+static const char *const dialect_names[] = {"firstlight", "pa1", "m04", "m12", NULL};
+static const char *const platform_names[] = {"glfw", "osmesa", "egl", NULL};
+
+#define BIT(command) (1u << (command))
+#define RENDERING (BIT(CLI_VIEW) | BIT(CLI_RENDER) | BIT(CLI_STUDY))
+#define PICTURE (RENDERING | BIT(CLI_CHECK) | BIT(CLI_REPLAY))
+#define LOADING (PICTURE | BIT(CLI_INFO) | BIT(CLI_BENCH))
+#define AT(field) offsetof(cli_options, field)
+
+const cli_option cli_option_table[CLI_OPT_COUNT] = {
+    [CLI_OPT_SIZE] = {"size", 's', "WxH", CLI_KIND_SIZE, AT(size), 1, FL_SIDE_MAX, NULL, RENDERING | BIT(CLI_BENCH),
+                      "picture size in pixels (default: the scene's, else 640x640)"},
+    [CLI_OPT_SAMPLES] = {"samples", 'n', "N", CLI_KIND_COUNT, AT(samples), 1, 1e9, NULL, RENDERING,
+                         "samples per pixel (default 64; the window stops at 4096; study: the longest curve)"},
+    [CLI_OPT_TIME] = {"time", 't', "SECONDS", CLI_KIND_NUMBER, AT(time_s), 1e-3, 1e9, NULL,
+                      BIT(CLI_VIEW) | BIT(CLI_RENDER), "stop after this time"},
+    [CLI_OPT_NOISE] = {"noise", 0, "RMSE", CLI_KIND_NUMBER, AT(noise), 1e-9, 1e3, NULL, RENDERING,
+                       "stop when the predicted error is below this"},
+    [CLI_OPT_LIGHT_SAMPLES] = {"light-samples", 0, "N", CLI_KIND_COUNT, AT(light_samples), 1,
+                               FL_LIGHT_SAMPLES_MAX, NULL, RENDERING, "shadow rays per disk light and hit"},
+    [CLI_OPT_DEPTH] = {"depth", 'd', "N", CLI_KIND_COUNT, AT(depth), 0, FL_DEPTH_MAX, NULL, RENDERING,
+                       "bounces of reflected and refracted rays"},
+    [CLI_OPT_APERTURE] = {"aperture", 'a', "R", CLI_KIND_NUMBER, AT(aperture), 0, 1e30, NULL, RENDERING,
+                          "lens radius in scene units; 0 is a pinhole"},
+    [CLI_OPT_FOCUS] = {"focus", 'f', "D", CLI_KIND_NUMBER_OR_INF, AT(focus), 1e-300, 1e300, NULL, RENDERING,
+                       "distance of the sharp plane along the view, or inf"},
+    [CLI_OPT_CAMERA] = {"camera", 'c', "'EX EY EZ  LX LY LZ  UX UY UZ  FOV'", CLI_KIND_CAMERA, AT(camera), 0, 0,
+                        NULL, RENDERING, "eye, look-at point, up, vertical field of view in degrees"},
+    [CLI_OPT_CROP] = {"crop", 0, "X,Y,W,H", CLI_KIND_CROP, AT(crop), 0, FL_SIDE_MAX, NULL, BIT(CLI_RENDER),
+                      "render this part only; same bytes as in the whole"},
+    [CLI_OPT_EXPOSURE] = {"exposure", 'e', "EV", CLI_KIND_NUMBER, AT(exposure_ev), -64, 64, NULL, RENDERING,
+                          "brighten 8-bit output by this many stops"},
+    [CLI_OPT_WEIGHT_THRESHOLD] = {"weight-threshold", 0, "W", CLI_KIND_NUMBER, AT(weight_threshold), 0, 1, NULL,
+                                  RENDERING, "end branches that weigh less (default 1/1024, 0: never)"},
+    [CLI_OPT_SEED] = {"seed", 0, "N", CLI_KIND_COUNT, AT(seed), 0, 4294967295.0, NULL, RENDERING,
+                      "another set of samples"},
+    [CLI_OPT_SAMPLER] = {"sampler", 0, NULL, CLI_KIND_CHOICE, AT(sampler), 0, 0, sampler_names, PICTURE,
+                         "where samples lie (default sobol)"},
+    [CLI_OPT_REVOLVE_SOLVER] = {"revolve-solver", 0, NULL, CLI_KIND_CHOICE, AT(solver), 0, 0, solver_names,
+                                PICTURE, "surfaces of revolution (default robust)"},
+    [CLI_OPT_ACCEL] = {"accel", 0, NULL, CLI_KIND_CHOICE, AT(accel), 0, 0, accel_names, LOADING,
+                       "how triangles are found (default bvh); all give the same picture"},
+    [CLI_OPT_OCTREE_HEIGHT] = {"octree-height", 0, "N", CLI_KIND_COUNT, AT(octree_height), 1, 8, NULL, LOADING,
+                               "levels of the octree (default 8)"},
+    [CLI_OPT_ISA] = {"isa", 0, NULL, CLI_KIND_CHOICE_TEXT, AT(isa), 0, 0, isa_names, LOADING,
+                     "instruction set (default auto); all give the same picture"},
+    [CLI_OPT_THREADS] = {"threads", 'j', "N", CLI_KIND_COUNT, AT(threads), 1, 1024, NULL, LOADING,
+                         "worker threads (default: one per CPU); any number gives the same picture"},
+    [CLI_OPT_DIALECT] = {"dialect", 0, NULL, CLI_KIND_CHOICE, AT(dialect), 0, 0, dialect_names,
+                         LOADING | BIT(CLI_CONVERT), "whose rules the text follows (default: recognised)"},
+    [CLI_OPT_DIALECT_EXACT] = {"dialect-exact", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, LOADING,
+                               "the picture of the course's own program, shortcuts included"},
+    [CLI_OPT_LENIENT] = {"lenient", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, LOADING | BIT(CLI_CONVERT),
+                         "warn about known slips of course files instead of refusing them"},
+    [CLI_OPT_OUTPUT] = {"output", 'o', "FILE", CLI_KIND_OUTPUT, AT(outputs), 0, 0, NULL, BIT(CLI_RENDER),
+                        "picture to write: .png .exr .tif .bmp ...; may be repeated"},
+    [CLI_OPT_AOV] = {"aov", 0, "NAMES", CLI_KIND_TEXT, AT(aov), 0, 0, NULL, BIT(CLI_RENDER),
+                     "what stands behind the pixels too: depth,normal,albedo,object,cost as NAME.depth.exr ..."},
+    [CLI_OPT_UPDATE] = {"update", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_CHECK),
+                        "write the golden pictures instead of comparing"},
+    [CLI_OPT_REPORT] = {"report", 0, "DIR", CLI_KIND_TEXT, AT(report), 0, 0, NULL, BIT(CLI_CHECK),
+                        "write a page with golden, new and difference"},
+    [CLI_OPT_OUT] = {"out", 0, "DIR", CLI_KIND_TEXT, AT(out_dir), 0, 0, NULL, BIT(CLI_STUDY),
+                     "folder for the figures, plots and page"},
+    [CLI_OPT_BUDGET] = {"budget", 0, "SECONDS", CLI_KIND_NUMBER, AT(budget_s), 1, 1e9, NULL, BIT(CLI_STUDY),
+                        "stop measuring after this time (default: when all is measured)"},
+    [CLI_OPT_REPEATS] = {"repeats", 0, "N", CLI_KIND_COUNT, AT(repeats), 1, 64, NULL,
+                         BIT(CLI_STUDY) | BIT(CLI_BENCH), "rounds of measurements (default: study 4, bench 5)"},
+    [CLI_OPT_SWEEP] = {"sweep", 0, "KNOB,...", CLI_KIND_TEXT, AT(sweep), 0, 0, NULL, BIT(CLI_STUDY),
+                       "knobs to move (default: all that mean something in the scene)"},
+    [CLI_OPT_AGAINST] = {"against", 0, "NAME", CLI_KIND_TEXT, AT(against), 0, 0, NULL, BIT(CLI_BENCH),
+                         "trace the same rays with another tracer: embree, where its module was built"},
+    [CLI_OPT_RECORD] = {"record", 0, "LOG", CLI_KIND_TEXT, AT(record), 0, 0, NULL, BIT(CLI_VIEW),
+                        "write all input to a log that replay understands"},
+    [CLI_OPT_PLATFORM] = {"platform", 0, NULL, CLI_KIND_CHOICE_TEXT, AT(platform), 0, 0, platform_names,
+                          BIT(CLI_VIEW) | BIT(CLI_REPLAY), "window or offscreen context"},
+    [CLI_OPT_SHADER_DIR] = {"shader-dir", 0, "DIR", CLI_KIND_TEXT, AT(shader_dir), 0, 0, NULL,
+                            BIT(CLI_VIEW) | BIT(CLI_REPLAY), "read shaders from here instead of the built-in ones"},
+    [CLI_OPT_JSON] = {"json", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL,
+                      BIT(CLI_RENDER) | BIT(CLI_INFO) | BIT(CLI_CHECK) | BIT(CLI_STUDY) | BIT(CLI_REPLAY) |
+                          BIT(CLI_BENCH),
+                      "one line of JSON at the end"},
+    [CLI_OPT_QUIET] = {"quiet", 'q', NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, PICTURE, "no progress, no summary"},
+    [CLI_OPT_HELP] = {"help", 'h', NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, ~0u, "show this help"},
+};
+
+/* Read a number and require that nothing but blanks follows. */
+static bool whole_number(const char *text, double *out)
+{
+    const char *end = text + strlen(text);
+    const char *rest = fl_number_parse(text, end, out);
+    return rest == end && rest != text;
+}
+
+/* Numbers separated by blanks, commas or `separator`; true when exactly `count` and nothing else. */
+static bool number_list(const char *text, char separator, uint32_t count, double *out)
+{
+    const char *end = text + strlen(text);
+    for (uint32_t i = 0; i < count; i++) {
+        while (*text == ' ' || *text == ',' || (i && *text == separator))
+            text++;
+        text = fl_number_parse(text, end, &out[i]);
+        if (!text)
+            return false;
+    }
+    while (*text == ' ')
+        text++;
+    return text == end;
+}
+
+static bool list_of_counts(const cli_option *row, const char *text, char separator, uint32_t count, uint32_t *out)
+{
+    double value[4];
+    if (!number_list(text, separator, count, value))
+        return false;
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(value[i] >= row->lowest && value[i] <= row->highest) || value[i] != (double)(uint32_t)value[i])
+            return false;
+        out[i] = (uint32_t)value[i];
+    }
+    return true;
+}
+
+static bool choose(const cli_option *row, const char *text, uint32_t *out)
+{
+    for (uint32_t i = 0; row->choices[i]; i++)
+        if (strcmp(row->choices[i], text) == 0) {
+            *out = i;
+            return true;
+        }
+    return false;
+}
+
+/* Store the value of one option; false when `text` is not a value of it. */
+static bool store(const cli_option *row, const char *text, cli_options *out)
+{
+    void *field = (char *)out + row->offset;
+    uint32_t choice;
+    switch (row->kind) {
+    case CLI_KIND_FLAG:
+        return true;
+    case CLI_KIND_COUNT:
+        return list_of_counts(row, text, ' ', 1, field);
+    case CLI_KIND_NUMBER: {
+        double value;
+        if (!whole_number(text, &value) || !(value >= row->lowest && value <= row->highest))
+            return false;
+        *(double *)field = value;
+        return true;
+    }
+    case CLI_KIND_NUMBER_OR_INF: {
+        double value;
+        if (!whole_number(text, &value) || !(value >= row->lowest))
+            return false;
+        *(double *)field = value;
+        return true;
+    }
+    case CLI_KIND_SIZE:
+        return list_of_counts(row, text, 'x', 2, field);
+    case CLI_KIND_CROP:
+        return list_of_counts(row, text, ',', 4, field) && out->crop[2] && out->crop[3];
+    case CLI_KIND_CAMERA:
+        return number_list(text, ' ', 10, field);
+    case CLI_KIND_CHOICE:
+        return choose(row, text, field);
+    case CLI_KIND_CHOICE_TEXT:
+        *(const char **)field = text;
+        return choose(row, text, &choice);
+    case CLI_KIND_TEXT:
+        *(const char **)field = text;
+        return *text != 0;
+    case CLI_KIND_OUTPUT:
+        out->outputs[out->output_count++] = text;
+        return *text != 0;
+    }
+    return false;
+}
+
+static void explain_value(const cli_option *row, const char *text, char *message, size_t bytes)
+{
+    int used = snprintf(message, bytes, "'%s' is not a value of --%s; expected ", text, row->name);
+    if (used < 0 || (size_t)used >= bytes)
+        return;
+    char *rest = message + used;
+    size_t room = bytes - (size_t)used;
+    if (row->choices) {
+        for (uint32_t i = 0; row->choices[i] && room; i++) {
+            used = snprintf(rest, room, "%s%s", i ? ", " : "", row->choices[i]);
+            if (used < 0 || (size_t)used >= room)
+                return;
+            rest += used;
+            room -= (size_t)used;
+        }
+    } else if (row->kind == CLI_KIND_COUNT) {
+        snprintf(rest, room, "a whole number from %.10g to %.10g", row->lowest, row->highest);
+    } else if (row->kind == CLI_KIND_NUMBER) {
+        snprintf(rest, room, "a number from %g to %g", row->lowest, row->highest);
+    } else {
+        snprintf(rest, room, "%s", row->argument ? row->argument : "text");
+    }
+}
+
+/* An unknown word that begins with '-': say so and name the nearest. */
+static void explain_unknown(cli_command_id command, const char *word, char *message, size_t bytes)
+{
+    const char *names[CLI_OPT_COUNT];
+    size_t count = 0;
+    for (int i = 0; i < CLI_OPT_COUNT; i++) {
+        const cli_option *row = &cli_option_table[i];
+        if (word[0] == '-' && word[1] == '-' && strcmp(row->name, word + 2) == 0) {
+            snprintf(message, bytes, "'%s' takes no option --%s", cli_command_table[command].name, row->name);
+            return;
+        }
+        if (row->commands & BIT(command))
+            names[count++] = row->name;
+    }
+    const char *bare = word + strspn(word, "-");
+    const char *nearest = fl_nearest_name(bare, strcspn(bare, "="), names, count);
+    if (nearest)
+        snprintf(message, bytes, "unknown option '%s'; did you mean '--%s'?", word, nearest);
+    else
+        snprintf(message, bytes, "unknown option '%s'", word);
+}
+
+bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_options *out, char *message,
+                       size_t message_bytes)
+{
+    *out = (cli_options){0};
+    struct option long_options[CLI_OPT_COUNT + 1] = {{0}};
+    char short_options[2 * CLI_OPT_COUNT + 2] = ":";
+    size_t shorts = 1, longs = 0;
+    for (int i = 0; i < CLI_OPT_COUNT; i++) {
+        const cli_option *row = &cli_option_table[i];
+        if (!(row->commands & BIT(command)))
+            continue;
+        bool takes_value = row->kind != CLI_KIND_FLAG;
+        long_options[longs++] =
+            (struct option){row->name, takes_value ? required_argument : no_argument, NULL, 256 + i};
+        if (row->letter) {
+            short_options[shorts++] = row->letter;
+            if (takes_value)
+                short_options[shorts++] = ':';
+        }
+    }
+    optind = 0; /* not 1: forget a cluster of letters that an earlier call gave up in */
+    opterr = 0;
+    for (int got; (got = getopt_long(argc, argv, short_options, long_options, NULL)) != -1;) {
+        int id = got - 256;
+        for (int i = 0; got < 256 && i < CLI_OPT_COUNT; i++)
+            if (cli_option_table[i].letter == (char)got && (cli_option_table[i].commands & BIT(command)))
+                id = i;
+        if (got == ':') {
+            snprintf(message, message_bytes, "option '%s' needs a value", argv[optind - 1]);
+            return false;
+        }
+        if (got == '?' || id < 0) {
+            explain_unknown(command, argv[optind - 1], message, message_bytes);
+            return false;
+        }
+        if (id == CLI_OPT_OUTPUT && out->output_count == CLI_OUTPUTS_MAX) {
+            snprintf(message, message_bytes, "at most %d pictures are written at once", CLI_OUTPUTS_MAX);
+            return false;
+        }
+        if (!store(&cli_option_table[id], optarg, out)) {
+            explain_value(&cli_option_table[id], optarg ? optarg : "", message, message_bytes);
+            return false;
+        }
+        out->given |= (uint64_t)1 << id;
+    }
+    out->paths = (const char **)argv + optind;
+    out->path_count = (uint32_t)(argc - optind);
+    return true;
+}

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The command line: one table of commands and one of options, from which parsing, --help and the man page come.
+ */
+#ifndef CLI_OPTIONS_H
+#define CLI_OPTIONS_H
+
+#include "core/firstlight.h"
+
+/** Exit codes of the program. */
+enum {
+    CLI_DONE = 0,
+    CLI_CHECK_FAILED = 1,
+    CLI_WRONG_USAGE = 2,
+    CLI_WRONG_INPUT = 3,
+    CLI_ENVIRONMENT = 4,
+    CLI_INTERRUPTED = 130
+};
+
+enum { CLI_OUTPUTS_MAX = 16 };
+
+/** Every option's identity: its row in the table and its bit in cli_options.given. */
+typedef enum cli_option_id {
+    CLI_OPT_SIZE,
+    CLI_OPT_SAMPLES,
+    CLI_OPT_TIME,
+    CLI_OPT_NOISE,
+    CLI_OPT_LIGHT_SAMPLES,
+    CLI_OPT_DEPTH,
+    CLI_OPT_APERTURE,
+    CLI_OPT_FOCUS,
+    CLI_OPT_CAMERA,
+    CLI_OPT_CROP,
+    CLI_OPT_EXPOSURE,
+    CLI_OPT_WEIGHT_THRESHOLD,
+    CLI_OPT_SEED,
+    CLI_OPT_SAMPLER,
+    CLI_OPT_REVOLVE_SOLVER,
+    CLI_OPT_ACCEL,
+    CLI_OPT_OCTREE_HEIGHT,
+    CLI_OPT_ISA,
+    CLI_OPT_THREADS,
+    CLI_OPT_DIALECT,
+    CLI_OPT_DIALECT_EXACT,
+    CLI_OPT_LENIENT,
+    CLI_OPT_OUTPUT,
+    CLI_OPT_AOV,
+    CLI_OPT_UPDATE,
+    CLI_OPT_REPORT,
+    CLI_OPT_OUT,
+    CLI_OPT_BUDGET,
+    CLI_OPT_REPEATS,
+    CLI_OPT_SWEEP,
+    CLI_OPT_AGAINST,
+    CLI_OPT_RECORD,
+    CLI_OPT_PLATFORM,
+    CLI_OPT_SHADER_DIR,
+    CLI_OPT_JSON,
+    CLI_OPT_QUIET,
+    CLI_OPT_HELP,
+    CLI_OPT_COUNT
+} cli_option_id;
+
+typedef enum cli_command_id {
+    CLI_VIEW,
+    CLI_RENDER,
+    CLI_CHECK,
+    CLI_STUDY,
+    CLI_BENCH,
+    CLI_INFO,
+    CLI_CONVERT,
+    CLI_REPLAY,
+    CLI_HELP,
+    CLI_COMMAND_COUNT
+} cli_command_id;
+
+/** What the user asked for. Strings are borrowed from argv. A value counts only when its bit is given. */
+typedef struct cli_options {
+    uint64_t given; /**< Bit per cli_option_id. */
+    uint32_t size[2], crop[4];
+    uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats;
+    double time_s, budget_s, noise, aperture, focus, exposure_ev, weight_threshold;
+    double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
+    uint32_t sampler, solver, accel, dialect; /**< Values of the core's enums. */
+    const char *outputs[CLI_OUTPUTS_MAX];
+    uint32_t output_count;
+    const char *aov, *report, *out_dir, *sweep, *record, *platform, *shader_dir, *isa, *against;
+    const char **paths; /**< Arguments that are no options; points into argv. */
+    uint32_t path_count;
+} cli_options;
+
+static inline bool cli_has(const cli_options *options, cli_option_id id)
+{
+    return options->given >> id & 1u;
+}
+
+/** Parse the words after the command's name. Permutes argv. False after writing one line about the first wrong
+ *  word, with the nearest right one, into `message`. */
+bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_options *out, char *message,
+                       size_t message_bytes);
+
+/** The command called `name`; CLI_COMMAND_COUNT: none. */
+cli_command_id cli_command_find(const char *name);
+/** Nearest command's name, or NULL. */
+const char *cli_command_nearest(const char *name);
+
+/** Print the help of one command (CLI_COMMAND_COUNT: the overview) on standard output. */
+void cli_print_help(cli_command_id command);
+/** Print the man page, in man(7) macros, on standard output. */
+void cli_print_man(void);
+
+#endif

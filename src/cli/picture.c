@@ -1,0 +1,185 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/picture.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "io/image_file.h"
+
+/* One line, rewritten in place, on a terminal only. */
+static void show_progress(const char *name, const fl_progress *progress, const fl_render_limits *limits)
+{
+    double share = 0.0;
+    if (limits->samples)
+        share = progress->mean_samples / limits->samples;
+    if (limits->seconds > 0.0)
+        share = fl_max(share, progress->seconds / limits->seconds);
+    double left = share > 0.0 ? progress->seconds * (1.0 - share) / share : 0.0;
+    fprintf(stderr, "\r%s: %5.1f samples, %3.0f %%, %.0f s left", name, progress->mean_samples, 100.0 * share, left);
+    if (progress->error.is_known)
+        fprintf(stderr, ", error %.4f", progress->error.rmse);
+    fputs("   ", stderr);
+    fflush(stderr);
+}
+
+static bool render_until_done(fl_render *render, const fl_render_limits *limits, const char *progress_name,
+                              cli_picture *out)
+{
+    bool shows = progress_name && isatty(STDERR_FILENO), has_shown = false;
+    while (!fl_render_wait(render, 0.1)) {
+        fl_render_progress(render, &out->progress);
+        if (out->progress.state == FL_RENDER_FAILED)
+            break;
+        if (cli_was_interrupted()) {
+            out->was_interrupted = true;
+            fl_render_set_paused(render, true);
+            break;
+        }
+        if (shows && out->progress.seconds > 1.0) {
+            show_progress(progress_name, &out->progress, limits);
+            has_shown = true;
+        }
+    }
+    if (has_shown)
+        fputc('\n', stderr);
+    fl_render_progress(render, &out->progress);
+    return out->progress.state != FL_RENDER_FAILED;
+}
+
+static bool take_picture(fl_render *render, cli_picture *out, fl_diags *diags)
+{
+    out->width = out->progress.width;
+    out->height = out->progress.height;
+    size_t floats;
+    if (!fl_size_mul((size_t)out->width * 3, out->height, &floats) ||
+        !(out->rgb = malloc(floats * sizeof *out->rgb)))
+        return fl_out_of_memory(diags, "the picture");
+    if (!fl_render_mean(render, out->rgb, floats, &out->progress))
+        return fl_environment_error(diags, "nothing was rendered");
+    fl_digest_sha256(out->rgb, floats * sizeof *out->rgb, out->film_sha256);
+    return true;
+}
+
+bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
+                        const char *progress_name, cli_picture *out)
+{
+    *out = (cli_picture){0};
+    fl_render_options options = {.thread_count = threads};
+    fl_render *render = fl_render_create(&options, scene->diags);
+    if (!render)
+        return false;
+    fl_render_set_limits(render, limits);
+    bool ok = fl_render_restart(render, scene->compiled, &scene->params, scene->diags);
+    if (ok && !render_until_done(render, limits, progress_name, out))
+        ok = fl_out_of_memory(scene->diags, "rendering");
+    if (ok)
+        ok = take_picture(render, out, scene->diags);
+    fl_render_destroy(render);
+    if (!ok)
+        cli_picture_close(out);
+    return ok;
+}
+
+void cli_picture_close(cli_picture *picture)
+{
+    free(picture->rgb);
+    picture->rgb = NULL;
+}
+
+uint8_t *cli_picture_bytes(const cli_picture *picture, const fl_params *params, fl_diags *diags)
+{
+    size_t pixels = (size_t)picture->width * picture->height;
+    uint8_t *rgba = malloc(pixels * 4);
+    if (!rgba) {
+        fl_out_of_memory(diags, "the picture");
+        return NULL;
+    }
+    fl_tonemap tonemap = {.exposure_ev = params->camera.exposure_ev, .truncates = params->exact.truncate_bytes};
+    fl_tonemap_rgba8(&tonemap, picture->rgb, pixels, rgba);
+    for (size_t i = 0; i < pixels; i++) { /* drop alpha in place */
+        rgba[3 * i] = rgba[4 * i];
+        rgba[3 * i + 1] = rgba[4 * i + 1];
+        rgba[3 * i + 2] = rgba[4 * i + 2];
+    }
+    return rgba;
+}
+
+bool cli_picture_save(const cli_picture *picture, const cli_scene *scene, const char *path, fl_diags *diags)
+{
+    fl_pixel_format format;
+    if (!fl_image_format_for(path, diags, &format))
+        return false;
+    fl_state_texts texts;
+    fl_state_texts_fill(&texts, scene->path, scene->scene->dialect, &scene->params, &picture->progress, picture->rgb);
+    fl_image image = {.width = picture->width, .height = picture->height, .format = format};
+    uint8_t *bytes = NULL;
+    if (format == FL_PIXEL_FLOAT) {
+        image.pixels = picture->rgb;
+    } else {
+        bytes = cli_picture_bytes(picture, &scene->params, diags);
+        if (!bytes)
+            return false;
+        image.pixels = bytes;
+    }
+    bool ok = fl_image_save(path, &image, texts.items, FL_COUNT_OF(texts.items), diags);
+    free(bytes);
+    return ok;
+}
+
+bool cli_aov_parse(const char *names, uint32_t *out_kinds, fl_diags *diags)
+{
+    *out_kinds = 0;
+    while (*names) {
+        size_t bytes = strcspn(names, ",");
+        uint32_t kind = 0;
+        while (kind < FL_AOV_COUNT &&
+               (strlen(fl_aov_names[kind]) != bytes || memcmp(fl_aov_names[kind], names, bytes) != 0))
+            kind++;
+        if (kind == FL_AOV_COUNT) {
+            const char *nearest = fl_nearest_name(names, bytes, fl_aov_names, FL_AOV_COUNT);
+            return fl_error(diags, (fl_loc){0}, "--aov does not know '%.*s'%s%s%s", (int)bytes, names,
+                            nearest ? "; did you mean '" : ": depth normal albedo object shape cost",
+                            nearest ? nearest : "", nearest ? "'?" : "");
+        }
+        *out_kinds |= 1u << kind;
+        names += bytes + (names[bytes] == ',');
+    }
+    return true;
+}
+
+static bool save_aov(const fl_frame *frame, fl_aov kind, const char *path, fl_diags *diags)
+{
+    fl_aov_grid grid = {.step = 1, .width = frame->width, .height = frame->height};
+    float *values = malloc((size_t)grid.width * grid.height * 3 * sizeof *values);
+    bool ok = values && fl_aov_eval(frame, kind, NULL, &grid, values);
+    fl_image image = {
+        .width = grid.width, .height = grid.height, .format = FL_PIXEL_FLOAT, .pixels = values};
+    ok = ok ? fl_image_save(path, &image, NULL, 0, diags) : fl_out_of_memory(diags, path);
+    free(values);
+    return ok;
+}
+
+bool cli_aov_save(const cli_scene *scene, const char *names, const char *path, fl_diags *diags)
+{
+    uint32_t kinds;
+    if (!cli_aov_parse(names, &kinds, diags))
+        return false;
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+    size_t stem = dot ? (size_t)(dot - path) : strlen(path), room = stem + 32;
+    char *name = malloc(room);
+    fl_frame *frame = name ? fl_frame_create(scene->compiled, &scene->params, diags) : NULL;
+    bool ok = frame != NULL;
+    for (uint32_t kind = 0; kind < FL_AOV_COUNT && ok; kind++) {
+        if (!(kinds >> kind & 1u))
+            continue;
+        snprintf(name, room, "%.*s.%s.exr", (int)stem, path, fl_aov_names[kind]);
+        ok = save_aov(frame, (fl_aov)kind, name, diags);
+    }
+    fl_frame_release(frame);
+    if (!name)
+        fl_out_of_memory(diags, path);
+    free(name);
+    return ok;
+}

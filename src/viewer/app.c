@@ -1,0 +1,432 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The live window: one loop that sleeps until there is input, something to show, or time to move.
+ * It never waits for a worker.
+ */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "io/state_text.h"
+#include "viewer/log.h"
+#include "viewer/session.h"
+#include "viewer/view.h"
+#include "viewer/watch.h"
+#include "viewer/words.h"
+
+enum {
+    RESIZE_QUIET_MS = 100,
+    RELOAD_QUIET_MS = 100, /* Several files saved together are read once. */
+    SNAPSHOT_NUMBER_MAX = 999999,
+    NOTES_BYTES = 1024
+};
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+typedef struct app {
+    const vw_options *options;
+    vw_platform *platform;
+    vw_view *view;
+    vw_session session;
+    vw_watch *watch;
+    FILE *record;
+    struct timespec begin;
+    uint64_t now_ms;
+    uint64_t shown_ms;        /**< When the picture last changed. */
+    uint64_t asked_ms;        /**< When the render was last asked for a newer one. */
+    uint64_t restart_ms;      /**< When to restart; UINT64_MAX: nothing to restart. */
+    uint64_t reload_ms;       /**< When to read the changed files; UINT64_MAX: they did not. */
+    uint64_t done_generation; /**< Last picture announced as done. */
+    uint32_t done_samples;
+    bool wants_refresh; /**< Ask the render without waiting for the next due time. */
+    bool needs_draw, has_quit;
+    char title[160];
+    fl_diags diags; /**< Of the current step; shown, then emptied. */
+} app;
+
+static uint64_t earlier(uint64_t a_ms, uint64_t b_ms)
+{
+    return a_ms < b_ms ? a_ms : b_ms;
+}
+
+static uint64_t clock_ms(const app *a)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    int64_t ms =
+        (int64_t)(now.tv_sec - a->begin.tv_sec) * 1000 + (now.tv_nsec - a->begin.tv_nsec) / 1000000;
+    return ms > 0 ? (uint64_t)ms : 0;
+}
+
+static void wake(void *context)
+{
+    vw_platform *platform = context;
+    platform->ops->wake(platform);
+}
+
+static void show_error(app *a)
+{
+    vw_session_take_error(&a->session, &a->diags);
+    a->needs_draw = true;
+}
+
+/* The first free name of firstlight-001.png and so on; false: none. */
+static bool free_name(char *out, size_t out_bytes)
+{
+    for (int number = 1; number <= SNAPSHOT_NUMBER_MAX; number++) {
+        snprintf(out, out_bytes, "firstlight-%03d.png", number);
+        if (access(out, F_OK) != 0 && errno == ENOENT)
+            return true;
+    }
+    return false;
+}
+
+/* Save what the film holds and tell everyone. */
+static void save_snapshot(app *a)
+{
+    vw_session *session = &a->session;
+    bool was_exact = session->exact_samples != 0;
+    session->exact_samples = 0;
+    vw_session_set_limits(session);
+    char path[64];
+    fl_progress progress;
+    float *rgb = vw_session_mean(session, &progress, &a->diags);
+    bool is_saved =
+        rgb && (free_name(path, sizeof path) ||
+                fl_environment_error(&a->diags, "no free name for a snapshot is left here"));
+    is_saved = is_saved && vw_session_save(session, path, rgb, &progress, &a->diags);
+    free(rgb);
+    if (!is_saved) {
+        show_error(a);
+        return;
+    }
+    vw_state_say(&session->state, "saved %s, %u samples", path, progress.complete_samples);
+    if (a->record && was_exact)
+        vw_log_write_snapshot(a->record, a->now_ms, path, progress.complete_samples);
+    if (!a->options->is_quiet) {
+        printf("saved %s %u samples\n", path, progress.complete_samples);
+        fflush(stdout);
+    }
+    a->needs_draw = true;
+}
+
+/* A snapshot has whole samples only, so that it can be made again: let the pass under way end
+ * first. */
+static void ask_snapshot(app *a)
+{
+    vw_session *session = &a->session;
+    fl_render_progress(session->render, &session->progress);
+    double mean = session->progress.mean_samples;
+    session->exact_samples = (uint32_t)fl_max(1.0, ceil(mean));
+    vw_session_set_limits(session);
+    a->wants_refresh = true;
+}
+
+static void print_camera(app *a)
+{
+    char text[2 * FL_STATE_TEXT_MAX];
+    vw_session_copy(&a->session, text, sizeof text);
+    a->platform->ops->set_clipboard(a->platform, text);
+    if (!a->options->is_quiet) {
+        fl_camera_options_text(&a->session.state.look.camera, text, sizeof text);
+        puts(text);
+        fflush(stdout);
+    }
+}
+
+/* What the clipboard holds becomes an event on one line, so that a record has it; comments go. */
+static void ask_paste(app *a)
+{
+    vw_event event = {.kind = VW_EVENT_PASTE};
+    const char *text = a->platform->ops->clipboard(a->platform);
+    size_t length = 0;
+    bool is_comment = false, is_start = true;
+    for (; text && *text && length + 1 < sizeof event.path; text++) {
+        bool is_end = *text == '\n' || *text == '\r';
+        is_comment = !is_end && (is_comment || (is_start && *text == '#'));
+        is_start = is_end;
+        if (!is_comment && (length > 0 || (unsigned char)*text > ' '))
+            event.path[length++] = (unsigned char)*text < ' ' ? ' ' : *text;
+    }
+    if (length == 0)
+        snprintf(event.path, sizeof event.path, "nothing");
+    vw_event_push(&a->platform->events, &event);
+}
+
+/* The scene's files, as they are now. */
+static void watch_files(app *a)
+{
+    const fl_scene *scene = a->session.scene.scene;
+    size_t most = 1 + (scene ? (size_t)scene->mesh_count + scene->image_count : 0), count = 0;
+    const char **paths = calloc(most, sizeof *paths);
+    if (!paths)
+        return;
+    paths[count++] = a->session.scene_path;
+    for (uint32_t i = 0; scene && i < scene->mesh_count; i++)
+        paths[count++] = scene->meshes[i].path;
+    for (uint32_t i = 0; scene && i < scene->image_count; i++)
+        paths[count++] = scene->images[i].path;
+    vw_watch_set(a->watch, paths, count);
+    free(paths);
+}
+
+/* Changed files are read again as if the key for it had been pressed, which a record keeps. */
+static void reload_if_changed(app *a)
+{
+    if (vw_watch_take(a->watch))
+        a->reload_ms = a->now_ms + RELOAD_QUIET_MS;
+    if (a->now_ms < a->reload_ms)
+        return;
+    a->reload_ms = UINT64_MAX;
+    vw_event event = {
+        .kind = VW_EVENT_KEY, .code = GLFW_KEY_R, .action = GLFW_PRESS, .mods = GLFW_MOD_CONTROL};
+    vw_event_push(&a->platform->events, &event);
+}
+
+static void load_scene(app *a, const char *path)
+{
+    if (!vw_session_load(&a->session, path, &a->diags)) {
+        show_error(a);
+        return;
+    }
+    fl_diags_deinit(&a->diags);
+    if (a->diags.error_count == 0)
+        vw_session_clear_error(&a->session);
+    watch_files(a);
+    vw_state_say(&a->session.state, "loaded");
+    vw_session_set_limits(&a->session);
+    a->restart_ms = a->now_ms;
+    a->session.revision = 0;
+}
+
+/* Do what a command asked for. `is_resize`: restart only when the hand rests. */
+static void apply(app *a, vw_dirty dirty, bool is_resize)
+{
+    dirty = vw_session_answer(&a->session, dirty, &a->diags);
+    if (a->diags.error_count)
+        show_error(a);
+    if (dirty & VW_DIRTY_SCENE)
+        load_scene(a, a->session.scene_path);
+    if (dirty & VW_DIRTY_CAMERA)
+        a->restart_ms = is_resize ? a->now_ms + RESIZE_QUIET_MS : earlier(a->restart_ms, a->now_ms);
+    if (dirty & VW_DIRTY_LIMITS)
+        vw_session_set_limits(&a->session);
+    if (dirty & VW_DIRTY_TONEMAP)
+        a->session.revision = 0;
+    a->wants_refresh |= (dirty & (VW_DIRTY_LIMITS | VW_DIRTY_TONEMAP | VW_DIRTY_SHOW)) != 0;
+    if (dirty & VW_DIRTY_SNAPSHOT)
+        ask_snapshot(a);
+    if (dirty & VW_DIRTY_PRINT)
+        print_camera(a);
+    if (dirty & VW_DIRTY_PASTE)
+        ask_paste(a);
+    if (dirty & VW_DIRTY_QUIT)
+        a->has_quit = true;
+    a->needs_draw |= dirty != VW_DIRTY_NONE;
+}
+
+static void take_events(app *a)
+{
+    vw_event event;
+    while (!a->has_quit && vw_event_pop(&a->platform->events, &event)) {
+        if (a->record)
+            vw_log_write_event(a->record, a->now_ms, &event);
+        vw_dirty dirty = vw_input_event(&a->session.input, &a->session.state, &event, a->now_ms);
+        if (event.kind == VW_EVENT_KEY && event.action != 0 && a->session.error_text &&
+            (dirty & VW_DIRTY_WINDOW))
+            vw_session_clear_error(&a->session);
+        apply(a, dirty, event.kind == VW_EVENT_RESIZE);
+        if (event.kind == VW_EVENT_DROP)
+            load_scene(a, event.path);
+        if (event.kind == VW_EVENT_PASTE)
+            apply(a, vw_session_paste(&a->session, event.path), false);
+    }
+    apply(a, vw_input_advance(&a->session.input, &a->session.state, a->now_ms), false);
+}
+
+static void restart_if_due(app *a)
+{
+    if (a->now_ms < a->restart_ms)
+        return;
+    a->restart_ms = UINT64_MAX;
+    /* A snapshot that still waits would show another picture: take it as it is. */
+    if (a->session.exact_samples)
+        save_snapshot(a);
+    if (!vw_session_restart(&a->session, &a->diags))
+        show_error(a);
+    a->wants_refresh = true;
+}
+
+/* How long one refresh of the picture is enough: what is new gets rarer. */
+static uint64_t refresh_interval_ms(const fl_progress *progress)
+{
+    if (progress->complete_samples <= 4)
+        return 16;
+    return progress->seconds < 1.0 ? 100 : 500;
+}
+
+static void announce(app *a)
+{
+    const fl_progress *progress = &a->session.progress;
+    if (progress->state != FL_RENDER_DONE || a->session.exact_samples ||
+        a->restart_ms != UINT64_MAX ||
+        (progress->generation == a->done_generation &&
+         progress->complete_samples == a->done_samples))
+        return;
+    a->done_generation = progress->generation;
+    a->done_samples = progress->complete_samples;
+    if (!a->options->is_quiet) {
+        printf("done %u samples %.3f s\n", progress->complete_samples, progress->seconds);
+        fflush(stdout);
+    }
+}
+
+static void refresh_if_due(app *a)
+{
+    vw_session *session = &a->session;
+    if (!a->wants_refresh && a->now_ms < a->shown_ms + refresh_interval_ms(&session->progress))
+        return;
+    fl_render_state before = session->progress.state;
+    uint32_t samples_before = session->progress.complete_samples;
+    a->wants_refresh = false;
+    a->asked_ms = a->now_ms;
+    if (vw_session_refresh(session, &a->diags)) {
+        a->shown_ms = a->now_ms;
+        vw_view_upload(a->view, vw_session_shown(session), session->progress.width,
+                       session->progress.height);
+        a->needs_draw = true;
+    }
+    a->needs_draw |=
+        session->progress.state != before || session->progress.complete_samples != samples_before;
+    if (a->diags.error_count)
+        show_error(a);
+    if (session->exact_samples && session->progress.complete_samples >= session->exact_samples)
+        save_snapshot(a);
+    announce(a);
+}
+
+static bool draw(app *a, fl_diags *diags)
+{
+    vw_session *session = &a->session;
+    char title[sizeof a->title];
+    vw_words_title(&session->state, &session->progress, session->scene_path, title, sizeof title);
+    if (strcmp(title, a->title) != 0) {
+        memcpy(a->title, title, sizeof title);
+        a->platform->ops->set_title(a->platform, title);
+    }
+    a->needs_draw = false;
+    char notes[NOTES_BYTES];
+    vw_session_notes(session, notes, sizeof notes);
+    vw_texts texts = {.notes = notes, .error = session->error_text};
+    if (!vw_view_draw(a->view, &session->state, &session->progress, &texts, diags))
+        return false;
+    a->platform->ops->swap(a->platform);
+    return true;
+}
+
+/* Seconds until something is due without input; < 0: nothing is. */
+static double time_to_sleep(const app *a)
+{
+    const vw_session *session = &a->session;
+    if (a->platform->events.count > 0)
+        return 0.0;
+    uint64_t until = earlier(a->restart_ms, a->reload_ms);
+    if (vw_input_is_moving(&session->input))
+        until = earlier(until, vw_input_next_tick_ms(&session->input));
+    if (vw_state_message(&session->state))
+        until = earlier(until, session->state.message_until_ms);
+    if (session->progress.state == FL_RENDER_RUNNING || session->exact_samples)
+        until = earlier(until, a->asked_ms + refresh_interval_ms(&session->progress));
+    if (until == UINT64_MAX)
+        return a->options->was_interrupted ? 1.0 : -1.0;
+    return until > a->now_ms ? (double)(until - a->now_ms) / 1000.0 : 0.0;
+}
+
+static bool loop(app *a, fl_diags *diags)
+{
+    while (!a->has_quit) {
+        a->now_ms = clock_ms(a);
+        bool had_message = vw_state_message(&a->session.state) != NULL;
+        reload_if_changed(a);
+        take_events(a);
+        a->needs_draw |= had_message != (vw_state_message(&a->session.state) != NULL);
+        restart_if_due(a);
+        refresh_if_due(a);
+        if (a->needs_draw && !draw(a, diags))
+            return false;
+        if (a->options->was_interrupted && a->options->was_interrupted())
+            break;
+        if (!a->has_quit)
+            a->platform->ops->pump(a->platform, time_to_sleep(a));
+    }
+    return true;
+}
+
+static bool open_record(app *a, fl_diags *diags)
+{
+    if (!a->options->record_path)
+        return true;
+    a->record = fopen(a->options->record_path, "w");
+    if (!a->record)
+        return fl_environment_error(diags, "cannot write the log '%s': %s", a->options->record_path,
+                                    strerror(errno));
+    /* By line: the log of a session that crashes is the one that is needed. */
+    setvbuf(a->record, NULL, _IOLBF, 0);
+    vw_log_write_header(a->record, a->session.state.width, a->session.state.height,
+                        a->session.scene_path);
+    return true;
+}
+
+static bool close_record(app *a, fl_diags *diags)
+{
+    if (!a->record)
+        return true;
+    vw_log_write_quit(a->record, clock_ms(a));
+    bool has_failed = ferror(a->record) != 0;
+    has_failed |= fclose(a->record) != 0;
+    return !has_failed || fl_environment_error(diags, "the log '%s' could not be written whole",
+                                               a->options->record_path);
+}
+
+static bool open_window(app *a, fl_diags *diags)
+{
+    vw_state *state = &a->session.state;
+    vw_window_desc desc = {
+        .title = "firstlight", .width = state->picture_width, .height = state->picture_height};
+    a->platform = vw_platform_create(a->options->platform, true, &desc, diags);
+    if (!a->platform)
+        return false;
+    uint32_t width, height;
+    a->platform->ops->framebuffer_size(a->platform, &width, &height);
+    vw_state_resize(state, width, height);
+    a->view = vw_view_create(a->platform, a->options->shader_dir, diags);
+    return a->view != NULL;
+}
+
+bool vw_run(const vw_options *options, fl_diags *diags)
+{
+    app a = {.options = options, .needs_draw = true, .reload_ms = UINT64_MAX};
+    clock_gettime(CLOCK_MONOTONIC, &a.begin);
+    bool is_fine = vw_session_open(&a.session, options, options->scene_path, 0, 0, diags) &&
+                   open_window(&a, diags) &&
+                   vw_session_start(&a.session, wake, a.platform, diags) && open_record(&a, diags);
+    if (is_fine) {
+        clock_gettime(CLOCK_MONOTONIC, &a.begin);
+        a.watch = vw_watch_create(wake, a.platform);
+        watch_files(&a);
+        is_fine = loop(&a, diags);
+        is_fine &= close_record(&a, diags);
+    }
+    /* The threads go first: they wake the platform. */
+    vw_watch_destroy(a.watch);
+    vw_session_close(&a.session);
+    vw_view_destroy(a.view);
+    if (a.platform)
+        a.platform->ops->destroy(a.platform);
+    fl_diags_deinit(&a.diags);
+    return is_fine;
+}

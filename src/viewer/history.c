@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+#include "viewer/history.h"
+
+#include <string.h>
+
+static vw_moment moment_of(const vw_state *state)
+{
+    return (vw_moment){.look = state->look, .mode = state->mode, .pivot = state->pivot};
+}
+
+static bool is_same_moment(const vw_moment *a, const vw_moment *b)
+{
+    return vw_look_is_same(&a->look, &b->look) && a->mode == b->mode && a->pivot.x == b->pivot.x &&
+           a->pivot.y == b->pivot.y && a->pivot.z == b->pivot.z;
+}
+
+static void push(vw_moment *list, uint32_t *count, const vw_moment *moment)
+{
+    if (*count == VW_HISTORY_MAX)
+        memmove(list, list + 1, --*count * sizeof *list);
+    list[(*count)++] = *moment;
+}
+
+void vw_history_begin(vw_history *history, const vw_state *state, bool forgets)
+{
+    if (forgets)
+        history->past_count = history->future_count = 0;
+    history->now = moment_of(state);
+    history->cause = NULL;
+}
+
+void vw_history_note(vw_history *history, const vw_state *state, const vw_command *cause,
+                     bool is_gesture)
+{
+    vw_moment now = moment_of(state);
+    if (is_same_moment(&now, &history->now))
+        return;
+    bool goes_on = is_gesture && cause && cause == history->cause &&
+                   state->now_ms < history->changed_ms + VW_HISTORY_QUIET_MS;
+    if (!goes_on)
+        push(history->past, &history->past_count, &history->now);
+    history->future_count = 0;
+    history->now = now;
+    history->cause = cause;
+    history->changed_ms = state->now_ms;
+}
+
+static vw_dirty go(vw_history *history, vw_state *state, vw_moment *from, uint32_t *from_count,
+                   vw_moment *to, uint32_t *to_count, const char *what)
+{
+    if (*from_count == 0) {
+        vw_state_say(state, "nothing to %s", what);
+        return VW_DIRTY_WINDOW;
+    }
+    push(to, to_count, &history->now);
+    history->now = from[--*from_count];
+    history->cause = NULL;
+    state->look = history->now.look;
+    state->mode = history->now.mode;
+    state->pivot = history->now.pivot;
+    state->rack_left = 0;
+    vw_state_say(state, "%s", what);
+    return (vw_dirty)(VW_DIRTY_CAMERA | VW_DIRTY_TONEMAP | VW_DIRTY_LIMITS);
+}
+
+vw_dirty vw_history_undo(vw_history *history, vw_state *state)
+{
+    return go(history, state, history->past, &history->past_count, history->future,
+              &history->future_count, "undo");
+}
+
+vw_dirty vw_history_redo(vw_history *history, vw_state *state)
+{
+    return go(history, state, history->future, &history->future_count, history->past,
+              &history->past_count, "redo");
+}

@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+#include "viewer/session.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/image_file.h"
+#include "io/state_text.h"
+
+static void scene_deinit(vw_scene *scene)
+{
+    fl_compiled_release(scene->compiled);
+    fl_scene_destroy(scene->scene);
+    *scene = (vw_scene){0};
+}
+
+static uint32_t sample_cap(const vw_session *session)
+{
+    uint32_t samples = session->options->limits.samples;
+    if (samples)
+        return samples;
+    return session->scene.samples ? session->scene.samples : VW_SAMPLES_DEFAULT;
+}
+
+static bool set_path(vw_session *session, const char *path, fl_diags *diags)
+{
+    char copy[VW_PATH_MAX];
+    if ((size_t)snprintf(copy, sizeof copy, "%s", path) >= sizeof copy)
+        return fl_error(diags, (fl_loc){0}, "the scene's path is longer than %d bytes",
+                        VW_PATH_MAX - 1);
+    memcpy(session->scene_path, copy, sizeof copy);
+    return true;
+}
+
+/* Once the scene is there: its state, its bookmarks. Errors in bookmarks are no reason to stop. */
+static void begin_scene(vw_session *session, fl_diags *diags)
+{
+    session->state.follows_window = !session->options->is_size_fixed && !session->scene.samples;
+    vw_state_init(&session->state, &session->scene.params, session->scene.compiled,
+                  sample_cap(session));
+    vw_history_begin(&session->history, &session->state, true);
+    if (!vw_bookmarks_load(&session->bookmarks, session->scene_path, session->scene.scene, diags)) {
+        vw_session_take_error(session, diags);
+        diags->error_count = 0;
+    }
+}
+
+bool vw_session_open(vw_session *session, const vw_options *options, const char *scene_path,
+                     uint32_t width, uint32_t height, fl_diags *diags)
+{
+    *session = (vw_session){.options = options};
+    session->state.width = width;
+    session->state.height = height;
+    if (!set_path(session, scene_path, diags) ||
+        !options->loader.load(options->loader.context, session->scene_path, &session->scene, diags))
+        return false;
+    if (session->scene.path[0] && !set_path(session, session->scene.path, diags))
+        return false;
+    begin_scene(session, diags);
+    return true;
+}
+
+bool vw_session_start(vw_session *session, void (*notify)(void *context), void *notify_context,
+                      fl_diags *diags)
+{
+    fl_render_options render = {.thread_count = session->options->thread_count,
+                                .is_low_priority = session->options->is_low_priority,
+                                .notify = notify,
+                                .notify_context = notify_context};
+    session->notify = notify;
+    session->notify_context = notify_context;
+    session->render = fl_render_create(&render, diags);
+    if (!session->render)
+        return false;
+    vw_session_set_limits(session);
+    return true;
+}
+
+void vw_session_close(vw_session *session)
+{
+    fl_render_destroy(session->render);
+    vw_show_deinit(&session->show);
+    scene_deinit(&session->scene);
+    free(session->rgba);
+    free(session->error_text);
+    *session = (vw_session){0};
+}
+
+bool vw_session_restart(vw_session *session, fl_diags *diags)
+{
+    fl_params params;
+    vw_state_params(&session->state, &session->scene.params, &params);
+    session->show.is_asked = false;
+    return fl_render_restart(session->render, session->scene.compiled, &params, diags);
+}
+
+void vw_session_set_limits(vw_session *session)
+{
+    fl_render_limits limits = session->options->limits;
+    limits.samples = session->state.look.sample_cap;
+    if (session->exact_samples)
+        limits = (fl_render_limits){.samples = session->exact_samples};
+    fl_render_set_limits(session->render, &limits);
+    fl_render_set_paused(session->render, session->state.is_paused && !session->exact_samples);
+}
+
+bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
+{
+    bool is_same = strcmp(path, session->scene_path) == 0;
+    vw_scene scene = {0};
+    if (strlen(path) >= VW_PATH_MAX)
+        return set_path(session, path, diags);
+    if (!session->options->loader.load(session->options->loader.context, path, &scene, diags))
+        return false;
+    scene_deinit(&session->scene);
+    session->scene = scene;
+    session->show.is_asked = false;
+    if (is_same) {
+        vw_state_rebase(&session->state, &scene.params, scene.compiled, sample_cap(session));
+        vw_history_begin(&session->history, &session->state, false);
+        return true;
+    }
+    if (!set_path(session, scene.path[0] ? scene.path : path, diags))
+        return false;
+    begin_scene(session, diags);
+    return true;
+}
+
+static bool is_newer(vw_session *session)
+{
+    fl_tonemap tonemap = {.exposure_ev = session->state.look.camera.exposure_ev,
+                          .truncates = session->scene.params.exact.truncate_bytes};
+    return fl_render_display(session->render, &session->revision, &tonemap, session->rgba,
+                             session->rgba_bytes, &session->progress);
+}
+
+/* Newer bytes of the picture, with room made for them. */
+static bool refresh_picture(vw_session *session, fl_diags *diags)
+{
+    if (is_newer(session))
+        return true;
+    size_t needed = (size_t)session->progress.width * session->progress.height * 4;
+    if (needed <= session->rgba_bytes)
+        return false;
+    uint8_t *rgba = realloc(session->rgba, needed);
+    if (!rgba)
+        return fl_out_of_memory(diags, "the picture");
+    session->rgba = rgba;
+    session->rgba_bytes = needed;
+    return is_newer(session);
+}
+
+bool vw_session_refresh(vw_session *session, fl_diags *diags)
+{
+    bool is_changed = refresh_picture(session, diags);
+    if (!session->show.is_asked)
+        vw_show_ask(session, diags);
+    is_changed |= vw_show_take(session);
+    is_changed |= session->show.is_stale;
+    session->show.is_stale = false;
+    /* Before the first picture there is nothing to compose. */
+    return is_changed && session->revision != 0 && vw_show_compose(session, diags);
+}
+
+float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags)
+{
+    fl_render_progress(session->render, out_progress);
+    size_t floats = (size_t)out_progress->width * out_progress->height * 3;
+    float *rgb = floats ? malloc(floats * sizeof *rgb) : NULL;
+    if (rgb && fl_render_mean(session->render, rgb, floats, out_progress))
+        return rgb;
+    free(rgb);
+    fl_out_of_memory(diags, "the snapshot");
+    return NULL;
+}
+
+static uint8_t *tonemapped(const vw_session *session, const float *rgb, size_t pixels)
+{
+    uint8_t *bytes = malloc(pixels * 4);
+    if (!bytes)
+        return NULL;
+    fl_tonemap tonemap = {.exposure_ev = session->state.look.camera.exposure_ev,
+                          .truncates = session->scene.params.exact.truncate_bytes};
+    fl_tonemap_rgba8(&tonemap, rgb, pixels, bytes);
+    for (size_t i = 0; i < pixels; i++)
+        memmove(bytes + 3 * i, bytes + 4 * i, 3);
+    return bytes;
+}
+
+bool vw_session_save(const vw_session *session, const char *path, const float *rgb,
+                     const fl_progress *progress, fl_diags *diags)
+{
+    fl_pixel_format format;
+    if (!fl_image_format_for(path, diags, &format))
+        return false;
+    size_t pixels = (size_t)progress->width * progress->height;
+    fl_params params;
+    vw_state_params(&session->state, &session->scene.params, &params);
+    const fl_scene *scene = session->scene.scene;
+    fl_state_texts texts;
+    fl_state_texts_fill(&texts, session->scene_path, scene ? scene->dialect : FL_DIALECT_FIRSTLIGHT,
+                        &params, progress, rgb);
+    fl_image image = {.width = progress->width, .height = progress->height, .format = format};
+    uint8_t *bytes = NULL;
+    if (format == FL_PIXEL_FLOAT) {
+        image.pixels = (void *)(uintptr_t)rgb;
+    } else {
+        image.pixels = bytes = tonemapped(session, rgb, pixels);
+        if (!bytes)
+            return fl_out_of_memory(diags, "the snapshot");
+    }
+    bool is_saved = fl_image_save(path, &image, texts.items, FL_COUNT_OF(texts.items), diags);
+    free(bytes);
+    return is_saved;
+}
+
+void vw_session_clear_error(vw_session *session)
+{
+    free(session->error_text);
+    session->error_text = NULL;
+}
+
+void vw_session_take_error(vw_session *session, fl_diags *diags)
+{
+    enum { LINES_BYTES = 4096 };
+    vw_session_clear_error(session);
+    char *text = malloc(LINES_BYTES);
+    size_t length = 0;
+    for (uint32_t i = 0; text && i < diags->count; i++) {
+        if (diags->items[i].severity == FL_WARNING || length + 2 >= LINES_BYTES)
+            continue;
+        if (length > 0)
+            text[length++] = '\n';
+        text[length] = 0;
+        length += fl_diag_format(&diags->items[i], text + length, LINES_BYTES - length);
+        if (length >= LINES_BYTES)
+            length = LINES_BYTES - 1;
+    }
+    if (length == 0) {
+        free(text);
+        text = NULL;
+    }
+    session->error_text = text;
+    fl_diags_deinit(diags);
+}

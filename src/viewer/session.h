@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A scene being looked at: state, render and the picture's bytes, without window or clock. The live
+ * window and the replay drive this same thing.
+ */
+#ifndef VW_SESSION_H
+#define VW_SESSION_H
+
+#include "viewer/bookmarks.h"
+#include "viewer/history.h"
+#include "viewer/input.h"
+#include "viewer/show.h"
+#include "viewer/viewer.h"
+
+typedef struct vw_session {
+    const vw_options *options; /**< Borrowed. */
+    char scene_path[VW_PATH_MAX];
+    vw_scene scene;
+    vw_state state;
+    vw_input input;
+    fl_render *render;
+    fl_progress progress; /**< As of the last refresh. */
+    uint8_t *rgba;        /**< The picture shown: progress.width x progress.height. Owned. */
+    size_t rgba_bytes;
+    uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
+    uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
+                               wanted. */
+    vw_history history;
+    vw_bookmarks bookmarks;
+    bool is_replay; /**< Bookmarks stay in memory. */
+    vw_show show;
+    void (*notify)(void *context); /**< As given to vw_session_start. */
+    void *notify_context;
+    char *error_text; /**< What went wrong last, as users read it, or NULL. Owned. */
+} vw_session;
+
+/** Load the scene. `width`, `height`: of the window; 0: as the scene's picture. False after adding
+ * an error; close it in any case. */
+bool vw_session_open(vw_session *session, const vw_options *options, const char *scene_path,
+                     uint32_t width, uint32_t height, fl_diags *diags);
+/** Start the workers, parked. `notify` as in fl_render_options. */
+bool vw_session_start(vw_session *session, void (*notify)(void *context), void *notify_context,
+                      fl_diags *diags);
+/** Stops and joins the workers. A zeroed session is fine. */
+void vw_session_close(vw_session *session);
+
+/** Begin the picture of the current state again. False: `diags` says why, the old picture stays. */
+bool vw_session_restart(vw_session *session, fl_diags *diags);
+
+/** Tell the render when to stop and whether to pause. */
+void vw_session_set_limits(vw_session *session);
+
+/** Read a scene, keeping the look (same path) or not (another). False: the last good scene stays,
+ * `diags` says why. Needs a restart afterwards. */
+bool vw_session_load(vw_session *session, const char *path, fl_diags *diags);
+
+/** Do what the bits of an input ask of a session (picks, undo, bookmarks, the pin) and note the
+ * step for undo. Returns the bits with what that made stale. */
+vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags);
+
+/** Answer a pick: focus on what stands at (pick_x, pick_y), the median depth of 5 x 5 pixels,
+ * misses left out; or, along mirrors and through glass, on what is seen there. */
+vw_dirty vw_session_pick(vw_session *session, fl_diags *diags);
+vw_dirty vw_session_pick_through(vw_session *session, fl_diags *diags);
+
+/** Take the camera that the text holds, as scene text or options, from the clipboard. */
+vw_dirty vw_session_paste(vw_session *session, const char *text);
+
+/** The camera as text for the clipboard: options in a comment, then scene text. Length as snprintf.
+ */
+size_t vw_session_copy(const vw_session *session, char *out, size_t out_bytes);
+
+/** Get newer bytes and progress; true: what is shown changed. Never waits for a worker. */
+bool vw_session_refresh(vw_session *session, fl_diags *diags);
+
+/** The bytes to show: progress.width x progress.height, RGBA. Valid until the next refresh. */
+const uint8_t *vw_session_shown(vw_session *session);
+
+/** Wait until what stands behind the pixels is there, for pictures of the window. */
+void vw_session_settle(vw_session *session, fl_diags *diags);
+
+/** Lines for the upper left corner: the layer's range, limits of sharpness, comparison, the pixel
+ * under the cursor. Empty: none. */
+void vw_session_notes(vw_session *session, char *out, size_t out_bytes);
+
+/** Write the picture of `rgb` (linear, progress.width x progress.height) to `path`; 8-bit files are
+ * tone-mapped. */
+bool vw_session_save(const vw_session *session, const char *path, const float *rgb,
+                     const fl_progress *progress, fl_diags *diags);
+
+/** Linear means as they are now, from malloc; NULL after adding an error. */
+float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags);
+
+/** Keep the newest errors of `diags` as error_text and empty the list. */
+void vw_session_take_error(vw_session *session, fl_diags *diags);
+void vw_session_clear_error(vw_session *session);
+
+/** Private to session*.c. */
+void vw_show_deinit(vw_show *show);
+vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags);
+/** The state's picture changed, or what is to be shown of it. */
+void vw_show_ask(vw_session *session, fl_diags *diags);
+/** Take what the guide has; true: it is to be composed. */
+bool vw_show_take(vw_session *session);
+bool vw_show_compose(vw_session *session, fl_diags *diags);
+
+#endif

@@ -1,0 +1,162 @@
+/* SPDX-License-Identifier: MIT */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/state_text.h"
+#include "viewer/session.h"
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static fl_frame *frame_of(vw_session *session, fl_params *out_params, fl_diags *diags)
+{
+    vw_state_params(&session->state, &session->scene.params, out_params);
+    return fl_frame_create(session->scene.compiled, out_params, diags);
+}
+
+vw_dirty vw_session_pick(vw_session *session, fl_diags *diags)
+{
+    enum { SIDE = 5 };
+    vw_state *state = &session->state;
+    fl_params params;
+    fl_frame *frame = frame_of(session, &params, diags);
+    if (!frame)
+        return VW_DIRTY_NONE;
+    double depths[SIDE * SIDE];
+    size_t count = 0;
+    double left = state->pick_x + (double)params.crop_x - SIDE / 2,
+           top = state->pick_y + (double)params.crop_y - SIDE / 2;
+    for (int i = 0; i < SIDE * SIDE; i++) {
+        fl_pick pick;
+        if (!fl_trace_pick(frame, left + i % SIDE, top + i / SIDE, &pick)) {
+            fl_out_of_memory(diags, "picking");
+            break;
+        }
+        if (pick.is_hit && pick.depth > 0.0)
+            depths[count++] = pick.depth;
+    }
+    fl_frame_release(frame);
+    qsort(depths, count, sizeof depths[0], compare_doubles);
+    return vw_state_focus_at(state, count ? depths[count / 2] : 0.0);
+}
+
+vw_dirty vw_session_pick_through(vw_session *session, fl_diags *diags)
+{
+    vw_state *state = &session->state;
+    fl_params params;
+    fl_frame *frame = frame_of(session, &params, diags);
+    if (!frame)
+        return VW_DIRTY_NONE;
+    double focus = 0.0;
+    fl_trace_seen seen;
+    if (!fl_trace_focus(frame, state->pick_x + (double)params.crop_x,
+                        state->pick_y + (double)params.crop_y, &focus, &seen))
+        fl_out_of_memory(diags, "picking");
+    fl_frame_release(frame);
+    vw_dirty dirty = vw_state_focus_at(state, focus);
+    if (focus > 0.0 && seen.bounces > 0)
+        vw_state_say(state, "focus at %.4g, %s by %u surface%s", focus,
+                     seen.refracted ? "seen through glass" : "mirrored", seen.bounces,
+                     seen.bounces > 1 ? "s" : "");
+    return dirty;
+}
+
+static vw_dirty take_camera(vw_state *state, const fl_camera *camera)
+{
+    uint32_t width = state->look.camera.width, height = state->look.camera.height;
+    state->look.camera = *camera;
+    state->look.camera.width = width;
+    state->look.camera.height = height;
+    state->mode = VW_MODE_FLY;
+    state->rack_left = 0;
+    return (vw_dirty)(VW_DIRTY_CAMERA | VW_DIRTY_TONEMAP);
+}
+
+vw_dirty vw_session_paste(vw_session *session, const char *text)
+{
+    vw_state *state = &session->state;
+    fl_camera camera = state->look.camera;
+    fl_params params;
+    fl_diags diags = {0};
+    bool is_found = text && fl_camera_read_text(text, strlen(text), &camera);
+    vw_state_params(state, &session->scene.params, &params);
+    params.camera = camera;
+    bool is_legal = is_found && fl_params_check(&params, &diags);
+    fl_diags_deinit(&diags);
+    if (!is_legal) {
+        vw_state_say(state, is_found ? "the camera in the clipboard is out of bounds"
+                                     : "no camera in the clipboard");
+        return VW_DIRTY_WINDOW;
+    }
+    vw_dirty dirty = take_camera(state, &camera);
+    vw_state_say(state, "camera pasted");
+    vw_history_note(&session->history, state, NULL, false);
+    return dirty;
+}
+
+size_t vw_session_copy(const vw_session *session, char *out, size_t out_bytes)
+{
+    char options[FL_STATE_TEXT_MAX], block[FL_STATE_TEXT_MAX];
+    const fl_camera *camera = &session->state.look.camera;
+    fl_camera_options_text(camera, options, sizeof options);
+    fl_camera_scene_text(camera, NULL, block, sizeof block);
+    int length = snprintf(out, out_bytes, "# %s\n%s", options, block);
+    return length > 0 ? (size_t)length : 0;
+}
+
+static vw_dirty recall(vw_session *session)
+{
+    vw_state *state = &session->state;
+    const fl_camera *camera = vw_bookmarks_find(&session->bookmarks, state->slot);
+    if (!camera) {
+        vw_state_say(state, "bookmark %u is empty (Ctrl+%u sets it)", state->slot, state->slot);
+        return VW_DIRTY_WINDOW;
+    }
+    vw_dirty dirty = take_camera(state, camera);
+    vw_state_say(state, "bookmark %u", state->slot);
+    return dirty;
+}
+
+static vw_dirty store(vw_session *session, fl_diags *diags)
+{
+    vw_state *state = &session->state;
+    if (vw_bookmarks_store(&session->bookmarks, state->slot, &state->look.camera,
+                           session->is_replay ? NULL : session->scene_path, diags))
+        vw_state_say(state, "bookmark %u set", state->slot);
+    return VW_DIRTY_WINDOW;
+}
+
+vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
+{
+    vw_state *state = &session->state;
+    unsigned all = dirty;
+    if (dirty & VW_DIRTY_PICK)
+        all |= vw_session_pick(session, diags);
+    if (dirty & VW_DIRTY_PICK_THROUGH)
+        all |= vw_session_pick_through(session, diags);
+    if (dirty & VW_DIRTY_RECALL)
+        all |= recall(session);
+    if (dirty & VW_DIRTY_STORE)
+        all |= store(session, diags);
+    if (dirty & VW_DIRTY_PIN)
+        all |= vw_show_toggle_pin(session, diags);
+    /* Before undo: what the events so far did is a step of its own. */
+    const vw_input *input = &session->input;
+    bool is_gesture = input->last_kind == VW_BIND_HOLD || input->last_kind == VW_BIND_DRAG ||
+                      input->last_kind == VW_BIND_WHEEL || state->rack_left > 0 ||
+                      (input->last && input->last->repeats);
+    vw_history_note(&session->history, state, input->last, is_gesture);
+    if (dirty & VW_DIRTY_UNDO)
+        all |= vw_history_undo(&session->history, state);
+    if (dirty & VW_DIRTY_REDO)
+        all |= vw_history_redo(&session->history, state);
+    session->input.is_racking = state->rack_left > 0;
+    if (all & (VW_DIRTY_CAMERA | VW_DIRTY_SHOW | VW_DIRTY_SCENE))
+        session->show.is_asked = false;
+    session->show.is_stale |= (all & VW_DIRTY_SHOW) != 0;
+    return (vw_dirty)all;
+}

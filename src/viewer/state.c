@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+#include "viewer/state.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+const char *const vw_layer_names[VW_LAYER_COUNT] = {
+    "beauty", "depth", "normal", "albedo", "samples", "error", "cost", "blur", "objects"};
+
+static uint32_t largest_light_samples(const fl_params *params)
+{
+    uint32_t largest = 1;
+    for (uint32_t i = 0; i < params->light_count; i++)
+        if (params->lights[i].kind == FL_LIGHT_DISK && params->lights[i].radius > 0.0)
+            largest = fl_max_u32(largest, params->lights[i].samples);
+    return largest;
+}
+
+static void set_scene(vw_state *state, const fl_params *params, const fl_compiled *compiled,
+                      uint32_t sample_cap)
+{
+    state->start = (vw_look){.camera = params->camera,
+                             .depth_limit = params->depth_limit,
+                             .light_samples = params->light_samples,
+                             .sample_cap = sample_cap};
+    state->scene_light_samples = largest_light_samples(params);
+    double extent = compiled ? compiled->geometry.extent : 1.0, focus = params->camera.focus;
+    state->scene_scale = isfinite(extent) && extent > 0.0 ? extent : 1.0;
+    /* A wide floor says little about the size of what is looked at; where the scene is focused says
+     * more. */
+    if (focus > 1e-3 * state->scene_scale && focus < state->scene_scale)
+        state->scene_scale = focus;
+    state->scene_center = compiled ? compiled->geometry.origin : fl_v3(0.0, 0.0, 0.0);
+}
+
+static bool is_same_point(fl_vec3 a, fl_vec3 b)
+{
+    return a.x == b.x && a.y == b.y && a.z == b.z;
+}
+
+/* Fit a picture into the framebuffer, centred, without distortion. */
+static void fit_picture(vw_state *state, uint32_t picture_width, uint32_t picture_height)
+{
+    state->picture_width = picture_width;
+    state->picture_height = picture_height;
+    double across = (double)state->width / (double)picture_width;
+    double down = (double)state->height / (double)picture_height;
+    state->picture_scale = fl_min(across, down);
+    /* Whole pixels of offset: at scale 1 the picture's pixels are the window's. */
+    state->picture_x =
+        floor(((double)state->width - state->picture_scale * (double)picture_width) / 2.0);
+    state->picture_y =
+        floor(((double)state->height - state->picture_scale * (double)picture_height) / 2.0);
+}
+
+static bool is_same_camera(const fl_camera *a, const fl_camera *b)
+{
+    return a->projection == b->projection && is_same_point(a->center, b->center) &&
+           is_same_point(a->direction, b->direction) && is_same_point(a->up, b->up) &&
+           a->fov_deg == b->fov_deg && a->ortho_size == b->ortho_size &&
+           a->aperture == b->aperture && a->focus == b->focus && a->blades == b->blades &&
+           a->blade_rotation_deg == b->blade_rotation_deg && a->exposure_ev == b->exposure_ev;
+}
+
+bool vw_look_is_same(const vw_look *a, const vw_look *b)
+{
+    return is_same_camera(&a->camera, &b->camera) && a->depth_limit == b->depth_limit &&
+           a->light_samples == b->light_samples && a->sample_cap == b->sample_cap;
+}
+
+/* The picture that the parameters ask for, in a window that may have another size. */
+static void set_picture(vw_state *state, const fl_params *params, bool wants_follow)
+{
+    bool is_cropped = params->crop_w != 0;
+    state->follows_window =
+        wants_follow && !is_cropped && params->camera_model == FL_CAMERA_VERTICAL_FOV;
+    uint32_t width = is_cropped ? params->crop_w : params->width,
+             height = is_cropped ? params->crop_h : params->height;
+    if (state->width == 0 || state->height == 0) {
+        state->width = width;
+        state->height = height;
+    }
+    if (state->follows_window)
+        fit_picture(state, fl_min_u32(state->width, FL_SIDE_MAX),
+                    fl_min_u32(state->height, FL_SIDE_MAX));
+    else
+        fit_picture(state, width, height);
+}
+
+void vw_state_init(vw_state *state, const fl_params *params, const fl_compiled *compiled,
+                   uint32_t sample_cap)
+{
+    bool wants_follow = state->follows_window;
+    *state = (vw_state){.width = state->width,
+                        .height = state->height,
+                        .now_ms = state->now_ms,
+                        .mode = VW_MODE_FLY,
+                        .speed = 1.0,
+                        .rack_seconds = 2.0,
+                        .is_hud_shown = true};
+    set_scene(state, params, compiled, sample_cap);
+    state->look = state->start;
+    set_picture(state, params, wants_follow);
+}
+
+void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled *compiled,
+                     uint32_t sample_cap)
+{
+    vw_look before = state->start;
+    set_scene(state, params, compiled, sample_cap);
+    if (is_same_camera(&state->look.camera, &before.camera))
+        state->look.camera = state->start.camera;
+    if (state->look.depth_limit == before.depth_limit)
+        state->look.depth_limit = state->start.depth_limit;
+    if (state->look.light_samples == before.light_samples)
+        state->look.light_samples = state->start.light_samples;
+    set_picture(state, params, state->follows_window);
+}
+
+void vw_state_params(const vw_state *state, const fl_params *base, fl_params *out_params)
+{
+    *out_params = *base;
+    out_params->camera = state->look.camera;
+    out_params->depth_limit = state->look.depth_limit;
+    out_params->light_samples = state->look.light_samples;
+    if (state->follows_window) {
+        out_params->width = state->picture_width;
+        out_params->height = state->picture_height;
+    }
+}
+
+void vw_state_say(vw_state *state, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(state->message, sizeof state->message, format, args);
+    va_end(args);
+    state->message_until_ms = state->now_ms + VW_MESSAGE_MS;
+}
+
+const char *vw_state_message(const vw_state *state)
+{
+    return state->now_ms < state->message_until_ms ? state->message : NULL;
+}
+
+vw_dirty vw_state_focus_at(vw_state *state, double depth)
+{
+    if (!(depth > 0.0) || !isfinite(depth)) {
+        vw_state_say(state, "nothing there to focus on");
+        return VW_DIRTY_WINDOW;
+    }
+    state->look.camera.focus = depth;
+    state->rack_left = 0;
+    state->rack_focus[0] = state->rack_focus[1];
+    state->rack_focus[1] = depth;
+    vw_state_say(state, "focus at %.4g", depth);
+    return state->look.camera.aperture > 0.0 ? VW_DIRTY_CAMERA : VW_DIRTY_WINDOW;
+}
+
+vw_dirty vw_state_resize(vw_state *state, uint32_t width, uint32_t height)
+{
+    if (width == 0 || height == 0)
+        return VW_DIRTY_NONE;
+    bool is_same = width == state->width && height == state->height;
+    state->width = width;
+    state->height = height;
+    if (!state->follows_window || is_same) {
+        fit_picture(state, state->picture_width, state->picture_height);
+        return VW_DIRTY_WINDOW;
+    }
+    fit_picture(state, fl_min_u32(width, FL_SIDE_MAX), fl_min_u32(height, FL_SIDE_MAX));
+    return (vw_dirty)(VW_DIRTY_WINDOW | VW_DIRTY_CAMERA);
+}
+
+vw_dirty vw_state_rack_step(vw_state *state)
+{
+    FL_ASSERT(state->rack_left > 0);
+    state->rack_left--;
+    double t = 1.0 - (double)state->rack_left / (double)state->rack_ticks;
+    /* Slow at both ends, and by factors, as a hand turns the ring. */
+    double eased = t * t * (3.0 - 2.0 * t);
+    double octaves = fl_d_log2(state->rack_to) - fl_d_log2(state->rack_from);
+    state->look.camera.focus =
+        state->rack_left ? state->rack_from * fl_d_exp2(eased * octaves) : state->rack_to;
+    return state->look.camera.aperture > 0.0 ? VW_DIRTY_CAMERA : VW_DIRTY_WINDOW;
+}

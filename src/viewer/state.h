@@ -1,0 +1,164 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a user of the viewer can change, as one plain value: copied, compared, tested without a
+ * window. Commands are its only writers besides vw_state_init, the clock and a finished pick.
+ */
+#ifndef VW_STATE_H
+#define VW_STATE_H
+
+#include "core/firstlight.h"
+
+/** Bounds at which the viewer stops and says so (decision 10 and the ranges of cli). */
+enum {
+    VW_LIGHT_SAMPLES_MAX = 256,
+    VW_SAMPLE_CAP_MAX = 1 << 20,
+    VW_MESSAGE_MAX = 128,
+    VW_MESSAGE_MS = 2500, /**< How long a message stays. */
+    VW_QUIT_MS = 3000,    /**< Within which the second Esc quits. */
+    VW_SLOT_COUNT = 9,    /**< Bookmarks. */
+    VW_HELP_PAGES = 2
+};
+#define VW_FOV_MIN_DEG     0.01
+#define VW_FOV_MAX_DEG     179.0
+#define VW_EXPOSURE_MAX_EV 20.0
+#define VW_SPEED_MAX       1024.0
+#define VW_FOCUS_RANGE                                                                             \
+    1e3 /**< Stepping reaches from scene scale / 1e6 to scene scale * this, then infinity. */
+#define VW_APERTURE_RANGE 1e3 /**< Largest lens by stepping, in scene scales. */
+
+typedef enum vw_mode { VW_MODE_FLY, VW_MODE_ORBIT } vw_mode;
+
+/** What is shown of the scene: the picture, or what stands behind its pixels. */
+typedef enum vw_layer {
+    VW_LAYER_BEAUTY,
+    VW_LAYER_DEPTH,
+    VW_LAYER_NORMAL,
+    VW_LAYER_ALBEDO,
+    VW_LAYER_SAMPLES,
+    VW_LAYER_ERROR,
+    VW_LAYER_COST,
+    VW_LAYER_BLUR, /**< Circle of confusion. */
+    VW_LAYER_OBJECTS,
+    VW_LAYER_COUNT
+} vw_layer;
+extern const char *const vw_layer_names[VW_LAYER_COUNT];
+
+/** Help for the eye with focusing. */
+typedef enum vw_assist {
+    VW_ASSIST_OFF,
+    VW_ASSIST_BAND,        /**< Tint what is blurred by less than a pixel. */
+    VW_ASSIST_RANGEFINDER, /**< Pinhole views from the lens's left edge in red, right in cyan. */
+    VW_ASSIST_COUNT
+} vw_assist;
+
+/** How the pinned picture is set against the present one. */
+typedef enum vw_compare {
+    VW_COMPARE_OFF,
+    VW_COMPARE_WIPE,       /**< Pinned left of the cursor. */
+    VW_COMPARE_DIFFERENCE, /**< Present minus pinned about middle grey. */
+    VW_COMPARE_COUNT
+} vw_compare;
+
+/** What part of the picture or program a command made stale: the application acts on these bits. */
+typedef enum vw_dirty {
+    VW_DIRTY_NONE = 0,
+    VW_DIRTY_WINDOW = 1 << 0,  /**< Overlays: draw again. */
+    VW_DIRTY_TONEMAP = 1 << 1, /**< Same samples, other bytes. */
+    VW_DIRTY_LIMITS = 1 << 2,  /**< When to stop, or pause: no restart. */
+    VW_DIRTY_CAMERA = 1 << 3,  /**< Camera or any other parameter: restart. */
+    VW_DIRTY_SCENE = 1 << 4,   /**< Read the scene file again. */
+    VW_DIRTY_PICK = 1 << 5,    /**< Focus at (pick_x, pick_y), answer with vw_state_focus_at. */
+    VW_DIRTY_SNAPSHOT = 1 << 6,
+    VW_DIRTY_PRINT = 1 << 7, /**< Camera to standard output and clipboard. */
+    VW_DIRTY_QUIT = 1 << 8,
+    VW_DIRTY_SHOW = 1 << 9,          /**< The same samples are to be shown otherwise. */
+    VW_DIRTY_PICK_THROUGH = 1 << 10, /**< As PICK, along mirrors and through glass. */
+    VW_DIRTY_UNDO = 1 << 11,
+    VW_DIRTY_REDO = 1 << 12,
+    VW_DIRTY_RECALL = 1 << 13, /**< The camera of bookmark `slot`. */
+    VW_DIRTY_STORE = 1 << 14,
+    VW_DIRTY_PASTE = 1 << 15, /**< The camera that the clipboard holds. */
+    VW_DIRTY_PIN = 1 << 16    /**< Keep or drop the picture as it is now. */
+} vw_dirty;
+
+/** What decides the picture: everything that R puts back. */
+typedef struct vw_look {
+    fl_camera camera;
+    uint32_t depth_limit;
+    uint32_t light_samples; /**< 0: each light's own. */
+    uint32_t sample_cap;
+} vw_look;
+
+typedef struct vw_state {
+    vw_look look, start;
+    /* About the scene, set at load. */
+    double scene_scale; /**< What motion and lens are scaled by: its radius or its focus, the
+                           smaller. */
+    fl_vec3 scene_center;
+    uint32_t scene_light_samples; /**< What light_samples 0 amounts to: the lights' largest. */
+    /* Moving. */
+    vw_mode mode;
+    fl_vec3 pivot;         /**< Orbit: what the camera turns about. */
+    double speed;          /**< Factor on the flying speed. */
+    double saved_aperture; /**< What O brings back. */
+    double rack_focus[2];  /**< The two latest foci that were picked; 0: none yet. */
+    double rack_from, rack_to;
+    double rack_seconds;            /**< How long racking takes. */
+    uint32_t rack_left, rack_ticks; /**< Steps of the clock to go; 0: not racking; of all. */
+    uint32_t slot;                  /**< Bookmark that a command means, 1 to VW_SLOT_COUNT. */
+    /* What is shown. */
+    vw_layer layer;
+    vw_assist assist;
+    vw_compare compare;
+    bool is_flipped; /**< The pinned picture alone, while Space is down. */
+    bool is_inspecting;
+    double cursor_x, cursor_y; /**< Picture pixels. */
+    /* Window. */
+    uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
+    bool is_hud_shown, is_paused;
+    uint32_t width, height; /**< Framebuffer, pixels. */
+    bool follows_window;    /**< The picture takes the window's size; else it keeps its own and is
+                               fitted in. */
+    double picture_x, picture_y,
+        picture_scale; /**< Where the picture stands in it; framebuffer pixels per pixel. */
+    uint32_t picture_width, picture_height; /**< Of the render. */
+    double pick_x, pick_y;                  /**< Picture pixels. */
+    /* Clock and message; log time. */
+    uint64_t now_ms, quit_armed_ms,
+        message_until_ms; /**< quit_armed_ms: until when Esc quits; 0: not armed. */
+    char message[VW_MESSAGE_MAX];
+} vw_state;
+
+/** Begin with a scene's parameters. Keeps nothing of *state but the clock, the window's size (0:
+ * the picture's) and follows_window, which becomes false for pictures that cannot: crops, and
+ * cameras whose field of view spans both axes. */
+void vw_state_init(vw_state *state, const fl_params *params, const fl_compiled *compiled,
+                   uint32_t sample_cap);
+
+/** A scene that was read again: it becomes the new start, and what the user changed of the look
+ * stays. */
+void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled *compiled,
+                     uint32_t sample_cap);
+
+/** The parameters of the picture to render now: `base` (the scene's) with the look over it. */
+void vw_state_params(const vw_state *state, const fl_params *base, fl_params *out_params);
+
+/** Say something on screen. */
+void vw_state_say(vw_state *state, const char *format, ...) FL_PRINTF(2, 3);
+/** The message to show now, or NULL. */
+const char *vw_state_message(const vw_state *state);
+
+/** Focus on a point at that distance along the viewing axis; not finite or <= 0: says that nothing
+ * was hit. */
+vw_dirty vw_state_focus_at(vw_state *state, double depth);
+
+/** Whether both ask for the same picture, exposure and limits included. */
+bool vw_look_is_same(const vw_look *a, const vw_look *b);
+
+/** One step of 1/60 s of a focus on its way. */
+vw_dirty vw_state_rack_step(vw_state *state);
+
+/** The framebuffer's size changed, or was only uncovered (the same size): dirty accordingly. */
+vw_dirty vw_state_resize(vw_state *state, uint32_t width, uint32_t height);
+
+#endif

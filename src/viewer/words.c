@@ -1,0 +1,243 @@
+/* SPDX-License-Identifier: MIT */
+#include "viewer/words.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "viewer/viewer.h"
+
+typedef struct buffer {
+    char *out;
+    size_t bytes, length; /* length: as if there were room for all */
+} buffer;
+
+static void add(buffer *b, const char *format, ...) FL_PRINTF(2, 3);
+
+static void add(buffer *b, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    bool has_room = b->length < b->bytes;
+    int length = vsnprintf(has_room ? b->out + b->length : NULL,
+                           has_room ? b->bytes - b->length : 0, format, args);
+    va_end(args);
+    b->length += length > 0 ? (size_t)length : 0;
+}
+
+/* What a key prints on a US keyboard, or its short name, where GLFW's own name reads badly. */
+static const struct {
+    int key;
+    const char *label;
+} labels[] = {
+    {GLFW_KEY_LEFT_BRACKET, "["}, {GLFW_KEY_RIGHT_BRACKET, "]"}, {GLFW_KEY_COMMA, ","},
+    {GLFW_KEY_PERIOD, "."},       {GLFW_KEY_MINUS, "-"},         {GLFW_KEY_EQUAL, "="},
+    {GLFW_KEY_TAB, "Tab"},        {GLFW_KEY_ESCAPE, "Esc"},      {GLFW_KEY_PAGE_UP, "PgUp"},
+    {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_SPACE, "Space"},
+};
+
+static void key_label(vw_platform *platform, int key, char out[16])
+{
+    const char *printed = platform ? platform->ops->key_label(platform, key) : NULL;
+    const char *label = printed && printed[0] > ' ' ? printed : NULL;
+    for (size_t i = 0; i < FL_COUNT_OF(labels) && !label; i++)
+        if (labels[i].key == key)
+            label = labels[i].label;
+    if (!label)
+        label = vw_key_name(key);
+    snprintf(out, 16, "%s", label ? label : "?");
+    if (out[0] >= 'a' && out[0] <= 'z' && out[1] == 0)
+        out[0] = (char)(out[0] - 'a' + 'A');
+}
+
+/* How many bindings from this one on are keys that count up in a row: 1 to 9, F2 to F10. */
+static int run_length(const vw_binding *binding)
+{
+    int length = 1;
+    while (binding[length].kind == binding->kind && binding->kind == VW_BIND_PRESS &&
+           binding[length].mods == binding->mods && binding[length].code == binding->code + length)
+        length++;
+    return length;
+}
+
+static void add_mods(buffer *b, int mods)
+{
+    if (mods & GLFW_MOD_CONTROL)
+        add(b, "Ctrl+");
+    if (mods & GLFW_MOD_SHIFT)
+        add(b, "Shift+");
+    if (mods & GLFW_MOD_ALT)
+        add(b, "Alt+");
+}
+
+void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW_KEYS_MAX])
+{
+    static const char *const buttons[] = {"left", "right", "middle"};
+    buffer b = {out, VW_KEYS_MAX, 0};
+    char label[16];
+    int last_mods = 0;
+    out[0] = 0;
+    for (const vw_binding *binding = command->bindings; binding->kind != VW_BIND_NONE; binding++) {
+        if (binding != command->bindings)
+            add(&b, binding->mods != last_mods ? "  " : " ");
+        if (binding->mods != last_mods || binding == command->bindings)
+            add_mods(&b, binding->mods);
+        last_mods = binding->mods;
+        switch (binding->kind) {
+        case VW_BIND_PRESS:
+        case VW_BIND_WHILE:
+        case VW_BIND_HOLD:
+            key_label(platform, binding->code, label);
+            add(&b, "%s", label);
+            if (run_length(binding) > 2) {
+                binding += run_length(binding) - 1;
+                key_label(platform, binding->code, label);
+                add(&b, "-%s", label);
+            }
+            break;
+        case VW_BIND_DRAG:
+            add(&b, "%s drag", buttons[binding->code]);
+            break;
+        case VW_BIND_CLICK:
+            add(&b, "%s click", buttons[binding->code]);
+            break;
+        case VW_BIND_WHEEL:
+            add(&b, "wheel");
+            break;
+        case VW_BIND_NONE:
+            break;
+        }
+    }
+}
+
+static vw_status *item(vw_status *out, uint32_t *count, const char *label)
+{
+    vw_status *status = &out[(*count)++];
+    *status = (vw_status){.is_alarm = false};
+    snprintf(status->label, sizeof status->label, "%s", label);
+    return status;
+}
+
+static uint64_t ray_count(const fl_counts *counts)
+{
+    return counts->camera_rays + counts->shadow_rays + counts->reflect_rays + counts->refract_rays;
+}
+
+static void work_items(const vw_state *state, const fl_progress *progress, vw_status *out,
+                       uint32_t *count)
+{
+    vw_status *s = item(out, count, "");
+    const char *word = state->is_paused                      ? "paused"
+                       : progress->state == FL_RENDER_DONE   ? "done"
+                       : progress->state == FL_RENDER_FAILED ? "out of memory"
+                       : progress->complete_samples == 0     ? "first look"
+                                                             : "rendering";
+    snprintf(s->value, sizeof s->value, "%s", word);
+    s->is_alarm = progress->state == FL_RENDER_FAILED;
+    s = item(out, count, "samples");
+    snprintf(s->value, sizeof s->value, "%u/%u", progress->complete_samples,
+             state->look.sample_cap);
+    s = item(out, count, "time");
+    snprintf(s->value, sizeof s->value, progress->seconds < 100.0 ? "%.1f s" : "%.0f s",
+             progress->seconds);
+    s = item(out, count, "error");
+    if (progress->error.is_known)
+        snprintf(s->value, sizeof s->value, "%.2g", progress->error.rmse);
+    else
+        snprintf(s->value, sizeof s->value, "n/a");
+    s = item(out, count, "");
+    double rate = progress->seconds > 0.0
+                      ? (double)ray_count(&progress->counts) / progress->seconds * 1e-6
+                      : 0.0;
+    snprintf(s->value, sizeof s->value, "%.1f Mray/s", rate);
+    if (progress->counts.invalid_samples > 0) {
+        s = item(out, count, "invalid");
+        snprintf(s->value, sizeof s->value, "%llu",
+                 (unsigned long long)progress->counts.invalid_samples);
+        s->is_alarm = true;
+    }
+}
+
+uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
+                         vw_status out[VW_STATUS_MAX])
+{
+    static const struct {
+        const char *label, *command;
+    } values[] = {
+        {"aperture", "aperture"}, {"focus", "focus"}, {"fov", "fov"}, {"light", "light-samples"},
+        {"depth", "depth"},       {"", "exposure"},   {"", "orbit"},
+    };
+    uint32_t count = 0;
+    char value[VW_VALUE_MAX];
+    work_items(state, progress, out, &count);
+    for (size_t i = 0; i < FL_COUNT_OF(values); i++) {
+        vw_status *s = item(out, &count, values[i].label);
+        vw_command_named(values[i].command)->value(state, value);
+        snprintf(s->value, sizeof s->value, "%.*s", (int)sizeof s->value - 1, value);
+    }
+    FL_ASSERT(count <= VW_STATUS_MAX);
+    return count;
+}
+
+double vw_words_done(const vw_state *state, const fl_progress *progress)
+{
+    if (progress->state == FL_RENDER_DONE)
+        return 1.0;
+    return fl_clamp(progress->mean_samples / (double)fl_max_u32(state->look.sample_cap, 1), 0.0,
+                    1.0);
+}
+
+void vw_words_title(const vw_state *state, const fl_progress *progress, const char *scene_path,
+                    char *out, size_t out_bytes)
+{
+    const char *name = strrchr(scene_path, '/');
+    name = name ? name + 1 : scene_path;
+    if (progress->state == FL_RENDER_DONE)
+        snprintf(out, out_bytes, "%s \342\200\224 firstlight", name);
+    else if (state->is_paused)
+        snprintf(out, out_bytes, "paused \342\200\224 %s \342\200\224 firstlight", name);
+    else
+        snprintf(out, out_bytes, "%.0f %% \342\200\224 %s \342\200\224 firstlight",
+                 floor(100.0 * vw_words_done(state, progress)), name);
+}
+
+size_t vw_controls_markdown(char *out, size_t out_bytes)
+{
+    buffer b = {out, out_bytes, 0};
+    add(&b, "# Controls\n\nMade from the command table (src/viewer/command_table.c); keys are "
+            "those of a US keyboard, and\n"
+            "the help in the window (F1) names them as your keyboard prints them.\n");
+    for (int group = 0; group < VW_GROUP_COUNT; group++) {
+        add(&b, "\n## %s\n\n| input | what it does |\n|---|---|\n", vw_group_titles[group]);
+        for (size_t i = 0; i < vw_command_count; i++) {
+            if (vw_commands[i].group != (vw_group)group)
+                continue;
+            char keys[VW_KEYS_MAX];
+            vw_words_keys(&vw_commands[i], NULL, keys);
+            add(&b, "| `%s` | %s |\n", keys, vw_commands[i].help);
+        }
+    }
+    add(&b, "\n## Views\n\n| key | shows |\n|---|---|\n");
+    static const char *const layers[VW_LAYER_COUNT] = {
+        "the picture",
+        "distance along the view, bright is near",
+        "shading normals, x y z as red green blue",
+        "diffuse colour with textures",
+        "samples of each pixel",
+        "estimated error, in squares of 16 pixels",
+        "rays that one sample costs",
+        "circle of confusion: white is sharp to a pixel, orange too near, blue too far",
+        "a colour for each object"};
+    for (int layer = 0; layer < VW_LAYER_COUNT; layer++)
+        add(&b, "| `F%d` | %s: %s |\n", layer + 2, vw_layer_names[layer], layers[layer]);
+    add(&b,
+        "\n## Files\n\nBookmarks are kept beside the scene as `SCENE.views`, which is scene text "
+        "(`View 1 { ... }`); views\nof the scene itself stand in the slots that it leaves empty. "
+        "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
+        "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
+        "saved.\n");
+    return b.length;
+}

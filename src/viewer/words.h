@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The viewer's words: labels of keys, the status line, the window's title, the controls page. Text
+ * only.
+ */
+#ifndef VW_WORDS_H
+#define VW_WORDS_H
+
+#include "viewer/command.h"
+#include "viewer/platform.h"
+
+enum { VW_KEYS_MAX = 64, VW_STATUS_MAX = 16 };
+
+/** The inputs of a command as people read them ("[ ]  Shift+[ ]", "left drag"). Keys are named as
+ * `platform` says the user's keyboard prints them; NULL: as on a US keyboard. */
+void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW_KEYS_MAX]);
+
+/** One item of the status line: a dim label (may be empty) and a bright value. */
+typedef struct vw_status {
+    char label[16], value[40];
+    bool is_alarm;
+} vw_status;
+
+/** The status line; returns how many items were written. */
+uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
+                         vw_status out[VW_STATUS_MAX]);
+
+/** Part of the work that is done, 0 to 1. */
+double vw_words_done(const vw_state *state, const fl_progress *progress);
+
+/** The window's title. */
+void vw_words_title(const vw_state *state, const fl_progress *progress, const char *scene_path,
+                    char *out, size_t out_bytes);
+
+#endif

@@ -1,0 +1,444 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Undo, bookmarks, cameras as text, racking, watching files, and pictures that open again.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "io/image_file.h"
+#include "io/state_text.h"
+#include "viewer/session.h"
+#include "viewer/watch.h"
+#include "viewer_loader.h"
+
+static char folder[] = "firstlight-features-XXXXXX";
+
+static void path_in_folder(const char *name, char out[256])
+{
+    snprintf(out, 256, "%s/%s", folder, name);
+}
+
+static void write_file(const char *name, const char *text, char out_path[256])
+{
+    path_in_folder(name, out_path);
+    FILE *file = fopen(out_path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+}
+
+static void open_session(vw_session *session, const vw_options *options, const char *path)
+{
+    fl_diags diags = {0};
+    if (!vw_session_open(session, options, path, 0, 0, &diags))
+        fail_msg("%s", diags.items[0].message);
+    assert_true(vw_session_start(session, NULL, NULL, &diags));
+    assert_int_equal(diags.error_count, 0);
+}
+
+/* Press and release, handled as the window does. */
+static vw_dirty tap(vw_session *session, int key, int mods, uint64_t ms)
+{
+    fl_diags diags = {0};
+    unsigned all = 0;
+    for (int action = GLFW_PRESS; action >= GLFW_RELEASE; action--) {
+        vw_event event = {.kind = VW_EVENT_KEY, .code = key, .action = action, .mods = mods};
+        vw_dirty dirty = vw_input_event(&session->input, &session->state, &event, ms);
+        all |= vw_session_answer(session, dirty, &diags);
+    }
+    assert_int_equal(diags.error_count, 0);
+    return (vw_dirty)all;
+}
+
+static void undo_and_redo_walk_the_same_looks(void **unused)
+{
+    (void)unused;
+    static const int keys[] = {GLFW_KEY_RIGHT_BRACKET,
+                               GLFW_KEY_PERIOD,
+                               GLFW_KEY_L,
+                               GLFW_KEY_K,
+                               GLFW_KEY_D,
+                               GLFW_KEY_B,
+                               GLFW_KEY_X,
+                               GLFW_KEY_O,
+                               GLFW_KEY_TAB};
+    enum { STEPS = FL_COUNT_OF(keys) };
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_look looks[STEPS + 1] = {session.state.look};
+    uint64_t ms = 0;
+    for (size_t i = 0; i < STEPS; i++) {
+        tap(&session, keys[i], 0, ms += 1000);
+        looks[i + 1] = session.state.look;
+        assert_false(i != STEPS - 1 && vw_look_is_same(&looks[i], &looks[i + 1]));
+    }
+    for (size_t i = STEPS; i-- > 0;) {
+        assert_true(tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, ms += 10) & VW_DIRTY_CAMERA);
+        assert_true(vw_look_is_same(&looks[i], &session.state.look));
+    }
+    assert_int_equal(session.state.mode, VW_MODE_FLY);
+    assert_false(tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, ms += 10) & VW_DIRTY_CAMERA);
+    for (size_t i = 1; i <= STEPS; i++) {
+        tap(&session, GLFW_KEY_Y, GLFW_MOD_CONTROL, ms += 10);
+        assert_true(vw_look_is_same(&looks[i], &session.state.look));
+    }
+    assert_int_equal(session.state.mode, VW_MODE_ORBIT);
+    /* A change forgets what was undone. */
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, ms += 10);
+    tap(&session, GLFW_KEY_K, 0, ms += 1000);
+    assert_false(tap(&session, GLFW_KEY_Y, GLFW_MOD_CONTROL, ms += 10) & VW_DIRTY_CAMERA);
+    vw_session_close(&session);
+}
+
+static void a_gesture_is_one_step(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    fl_diags diags = {0};
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_look before = session.state.look;
+    for (uint64_t i = 0; i < 3 * VW_HISTORY_MAX; i++) {
+        vw_event wheel = {.kind = VW_EVENT_SCROLL, .y = 1.0};
+        vw_session_answer(&session, vw_input_event(&session.input, &session.state, &wheel, 10 * i),
+                          &diags);
+    }
+    assert_int_equal(session.history.past_count, 1);
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 100000);
+    assert_true(vw_look_is_same(&before, &session.state.look));
+    /* However many steps, the memory is the same, and the latest are kept. */
+    for (uint64_t i = 0; i < 2 * VW_HISTORY_MAX; i++)
+        tap(&session, GLFW_KEY_B, i % 40 < 20 ? 0 : GLFW_MOD_SHIFT, 200000 + 1000 * i);
+    assert_int_equal(session.history.past_count, VW_HISTORY_MAX);
+    vw_session_close(&session);
+}
+
+static void bookmarks_stay_beside_the_scene(void **unused)
+{
+    (void)unused;
+    char scene[256], views[300];
+    static const char text[] =
+        "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }\n"
+        "View door { center 1 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n"
+        "View 3 { center 3 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n";
+    write_file("marks.txt", text, scene);
+    snprintf(views, sizeof views, "%s.views", scene);
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, scene);
+    tap(&session, GLFW_KEY_3, 0, 100);
+    assert_true(session.state.look.camera.center.x == 3.0);
+    tap(&session, GLFW_KEY_1, 0, 1000);
+    assert_true(session.state.look.camera.center.x == 1.0);
+    assert_false(tap(&session, GLFW_KEY_9, 0, 2000) & VW_DIRTY_CAMERA);
+    session.state.look.camera.center.x = 0.1;
+    session.state.look.camera.aperture = 1.0 / 3.0;
+    session.state.look.camera.focus = (double)INFINITY;
+    session.state.look.camera.blades = 7;
+    fl_camera kept = session.state.look.camera;
+    tap(&session, GLFW_KEY_9, GLFW_MOD_CONTROL, 3000);
+    assert_int_equal(access(views, R_OK), 0);
+    vw_session_close(&session);
+    open_session(&session, &options, scene);
+    tap(&session, GLFW_KEY_9, 0, 100);
+    vw_look a = session.state.look, b = a;
+    b.camera = kept;
+    assert_true(vw_look_is_same(&a, &b));
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 200);
+    assert_true(session.state.look.camera.center.x == 0.0);
+    vw_session_close(&session);
+    /* A file with errors is said, not fatal, and not written over. */
+    write_file("marks.txt.views", "firstlight 1\nView 1 { centre 0 }\n", views);
+    open_session(&session, &options, scene);
+    assert_non_null(strstr(session.error_text, "marks.txt.views:2"));
+    fl_diags diags = {0};
+    session.state.slot = 2;
+    vw_session_answer(&session, VW_DIRTY_STORE, &diags);
+    assert_int_equal(diags.error_count, 1);
+    fl_diags_deinit(&diags);
+    vw_session_close(&session);
+    /* A replay writes nothing. */
+    unlink(views);
+    open_session(&session, &options, scene);
+    session.is_replay = true;
+    tap(&session, GLFW_KEY_2, GLFW_MOD_CONTROL, 100);
+    assert_int_not_equal(access(views, F_OK), 0);
+    vw_session_close(&session);
+}
+
+static void cameras_read_back_from_both_texts(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    uint32_t seed = 5;
+    printf("seed %u\n", seed);
+    for (int round = 0; round < 200; round++) {
+        double v[12];
+        for (int i = 0; i < 12; i++)
+            v[i] = ldexp((double)(seed = fl_lowbias32(seed + 1)) - 2e9, -30);
+        fl_camera *camera = &session.state.look.camera, blank = {0};
+        camera->center = fl_v3(v[0], v[1], v[2]);
+        camera->direction = fl_v3(v[3], v[4], v[5] - 4.0);
+        camera->up = fl_v3(v[6] / 9.0, 1.0, v[8] / 9.0);
+        camera->fov_deg = 20.0 + v[9];
+        camera->aperture = fabs(v[10]);
+        camera->focus = round % 3 ? 5.0 + v[11] : (double)INFINITY;
+        camera->blades = round % 2 ? 6 : 0;
+        vw_look want = session.state.look, got = want;
+        char text[2 * FL_STATE_TEXT_MAX];
+        size_t length = vw_session_copy(&session, text, sizeof text);
+        assert_true(length < sizeof text);
+        got.camera = blank;
+        assert_true(fl_camera_read_text(text, length, &got.camera));
+        got.camera.width = want.camera.width;
+        got.camera.height = want.camera.height;
+        got.camera.ortho_size = want.camera.ortho_size;
+        assert_true(vw_look_is_same(&want, &got));
+        length = fl_camera_options_text(camera, text, sizeof text);
+        got.camera.center.x = got.camera.aperture = got.camera.focus = 77.0;
+        assert_true(fl_camera_read_text(text, length, &got.camera));
+        assert_true(got.camera.center.x == camera->center.x);
+        assert_true(got.camera.aperture == camera->aperture && got.camera.focus == camera->focus);
+        fl_vec3 off = fl_v3_sub(got.camera.direction, camera->direction);
+        assert_true(fl_v3_length(off) < 1e-14 * 8.0);
+    }
+    static const char *const wrong[] = {"",
+                                        "nothing",
+                                        "--camera '1 2 3'",
+                                        "View",
+                                        "firstlight 1",
+                                        "--camera '0 0 0 0 0 0 0 1 0 40'",
+                                        "\xff\xff{{{{",
+                                        "--camera '0 0 0  0 0 1  0 1 0  400'"};
+    vw_look before = session.state.look;
+    vw_history_begin(&session.history, &session.state, true);
+    for (size_t i = 0; i < FL_COUNT_OF(wrong); i++) {
+        assert_false(vw_session_paste(&session, wrong[i]) & VW_DIRTY_CAMERA);
+        assert_true(vw_look_is_same(&before, &session.state.look));
+    }
+    assert_true(vw_session_paste(&session, "  --camera '0 0 9  0 0 0  0 1 0  40' --focus inf") &
+                VW_DIRTY_CAMERA);
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 10);
+    assert_true(vw_look_is_same(&before, &session.state.look));
+    vw_session_close(&session);
+}
+
+static void racking_arrives_on_time_and_exactly(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_state *state = &session.state;
+    tap(&session, GLFW_KEY_G, 0, 10);
+    assert_false(vw_input_is_moving(&session.input)); /* Nothing was picked yet. */
+    vw_state_focus_at(state, 2.0);
+    vw_state_focus_at(state, 8.0);
+    tap(&session, GLFW_KEY_G, 0, 1000);
+    assert_true(vw_input_is_moving(&session.input));
+    double last = 8.0;
+    for (uint64_t ms = 1001; ms < 2990; ms += 13) {
+        vw_input_advance(&session.input, state, ms);
+        assert_true(state->look.camera.focus <= last && state->look.camera.focus > 2.0);
+        last = state->look.camera.focus;
+    }
+    vw_input_advance(&session.input, state, 3017);
+    assert_true(state->look.camera.focus == 2.0);
+    assert_false(vw_input_is_moving(&session.input));
+    tap(&session, GLFW_KEY_G, 0, 4000);
+    vw_input_advance(&session.input, state, 5000);
+    assert_true(fabs(state->look.camera.focus - 4.0) < 1e-3); /* Half way, by factors. */
+    vw_input_advance(&session.input, state, 60000);
+    assert_true(state->look.camera.focus == 8.0);
+    vw_session_close(&session);
+}
+
+typedef struct bell {
+    pthread_mutex_t lock;
+    pthread_cond_t rung;
+    uint32_t count;
+} bell;
+
+static void ring(void *context)
+{
+    bell *b = context;
+    pthread_mutex_lock(&b->lock);
+    b->count++;
+    pthread_cond_signal(&b->rung);
+    pthread_mutex_unlock(&b->lock);
+}
+
+static void wait_for(bell *b, uint32_t count)
+{
+    pthread_mutex_lock(&b->lock);
+    while (b->count < count)
+        pthread_cond_wait(&b->rung, &b->lock);
+    pthread_mutex_unlock(&b->lock);
+}
+
+static void saved_files_ring_and_others_do_not(void **unused)
+{
+    (void)unused;
+    bell b = {.lock = PTHREAD_MUTEX_INITIALIZER, .rung = PTHREAD_COND_INITIALIZER};
+    vw_watch *watch = vw_watch_create(ring, &b);
+    if (!watch)
+        skip();
+    char path[256], other[256], fresh[256];
+    write_file("watched.txt", "1", path);
+    const char *paths[] = {path};
+    vw_watch_set(watch, paths, 1);
+    assert_false(vw_watch_take(watch));
+    write_file("other.txt", "1", other);
+    write_file("watched.txt", "2", path);
+    wait_for(&b, 1);
+    assert_true(vw_watch_take(watch));
+    assert_false(vw_watch_take(watch));
+    /* As editors do: a new file takes the place of the old one. */
+    write_file("fresh.txt", "3", fresh);
+    assert_int_equal(rename(fresh, path), 0);
+    wait_for(&b, 2);
+    assert_true(vw_watch_take(watch));
+    /* Watched no more. */
+    const char *others[] = {other};
+    vw_watch_set(watch, others, 1);
+    write_file("watched.txt", "4", path);
+    write_file("other.txt", "2", other);
+    wait_for(&b, 3);
+    assert_int_equal(b.count, 3);
+    vw_watch_destroy(watch);
+}
+
+/* Render the session's state to exactly that many samples and save it. */
+static void save_state(vw_session *session, uint32_t samples, const char *path,
+                       char out_sha256[FL_SHA256_HEX + 1])
+{
+    fl_diags diags = {0};
+    session->exact_samples = samples;
+    vw_session_set_limits(session);
+    assert_true(vw_session_restart(session, &diags));
+    assert_true(fl_render_wait(session->render, -1.0));
+    fl_progress progress;
+    float *rgb = vw_session_mean(session, &progress, &diags);
+    assert_non_null(rgb);
+    fl_digest_sha256(rgb, (size_t)progress.width * progress.height * 12, out_sha256);
+    if (!vw_session_save(session, path, rgb, &progress, &diags))
+        fail_msg("%s", diags.items[0].message);
+    free(rgb);
+}
+
+static void a_saved_picture_opens_where_it_was(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"state.png", "state.exr"};
+    vw_options options = viewer_test_options();
+    for (size_t i = 0; i < FL_COUNT_OF(names); i++) {
+        vw_session session, again;
+        char path[256], copy[256], first[FL_SHA256_HEX + 1], second[FL_SHA256_HEX + 1];
+        path_in_folder(names[i], path);
+        path_in_folder(i ? "again.exr" : "again.png", copy);
+        open_session(&session, &options, VIEWER_TEST_SCENE);
+        static const int keys[] = {GLFW_KEY_D,     GLFW_KEY_E, GLFW_KEY_RIGHT_BRACKET,
+                                   GLFW_KEY_COMMA, GLFW_KEY_L, GLFW_KEY_K,
+                                   GLFW_KEY_B};
+        for (size_t k = 0; k < FL_COUNT_OF(keys); k++)
+            tap(&session, keys[k], 0, 1000 * k);
+        vw_state_resize(&session.state, 77, 51);
+        save_state(&session, 3, path, first);
+        open_session(&again, &options, path);
+        assert_string_equal(again.scene_path, VIEWER_TEST_SCENE);
+        assert_int_equal(again.state.look.sample_cap, 3);
+        vw_look look = again.state.look;
+        look.sample_cap = session.state.look.sample_cap;
+        assert_true(vw_look_is_same(&look, &session.state.look));
+        save_state(&again, again.state.look.sample_cap, copy, second);
+        assert_string_equal(first, second);
+        vw_session_close(&again);
+        /* Dropped on a window that shows something else, of another size. */
+        open_session(&again, &options, VIEWER_TEST_SCENE);
+        vw_state_resize(&again.state, 200, 200);
+        fl_diags diags = {0};
+        assert_true(vw_session_load(&again, path, &diags));
+        assert_int_equal(again.state.width, 200);
+        save_state(&again, again.state.look.sample_cap, copy, second);
+        assert_string_equal(first, second);
+        vw_session_close(&again);
+        vw_session_close(&session);
+    }
+}
+
+static void other_pictures_are_refused(void **unused)
+{
+    (void)unused;
+    char path[256];
+    path_in_folder("plain.png", path);
+    uint8_t pixel[3] = {1, 2, 3};
+    fl_image image = {.width = 1, .height = 1, .format = FL_PIXEL_SRGB8, .pixels = pixel};
+    fl_diags diags = {0};
+    fl_saved_state state;
+    assert_true(fl_image_save(path, &image, NULL, 0, &diags));
+    assert_false(fl_saved_state_load(path, &state, &diags));
+    assert_non_null(strstr(diags.items[0].message, "does not say how it was made"));
+    fl_saved_state_deinit(&state);
+    fl_diags_deinit(&diags);
+    const fl_image_text texts[] = {{"firstlight:scene", "nowhere.txt"},
+                                   {"firstlight:view", "View a { }"},
+                                   {"firstlight:settings", "size -1 x"},
+                                   {"firstlight:samples", "3"}};
+    assert_true(fl_image_save(path, &image, texts, FL_COUNT_OF(texts), &diags));
+    assert_false(fl_saved_state_load(path, &state, &diags));
+    assert_non_null(strstr(diags.items[0].message, "damaged"));
+    fl_saved_state_deinit(&state);
+    fl_diags_deinit(&diags);
+    assert_false(fl_saved_state_is_for("scene.txt"));
+    assert_true(fl_saved_state_is_for("a/b.EXR"));
+}
+
+static int make_folder(void **unused)
+{
+    (void)unused;
+    return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"marks.txt", "marks.txt.views", "watched.txt", "other.txt",
+                                        "fresh.txt", "state.png",       "state.exr",   "again.png",
+                                        "again.exr", "plain.png"};
+    for (size_t i = 0; i < FL_COUNT_OF(names); i++) {
+        char path[256];
+        path_in_folder(names[i], path);
+        unlink(path);
+    }
+    return rmdir(folder);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(undo_and_redo_walk_the_same_looks),
+        cmocka_unit_test(a_gesture_is_one_step),
+        cmocka_unit_test(bookmarks_stay_beside_the_scene),
+        cmocka_unit_test(cameras_read_back_from_both_texts),
+        cmocka_unit_test(racking_arrives_on_time_and_exactly),
+        cmocka_unit_test(saved_files_ring_and_others_do_not),
+        cmocka_unit_test(a_saved_picture_opens_where_it_was),
+        cmocka_unit_test(other_pictures_are_refused),
+    };
+    return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Thousands of random inputs, resizes, reloads and looks at the picture, as fast as they go:
+ * nothing breaks, and the film in the end is that of a fresh session with the same look. The first
+ * argument is the number of inputs.
+ */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <stdio.h>
+#include <string.h>
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+#include "viewer/session.h"
+#include "viewer_loader.h"
+
+static uint32_t input_count = 2000;
+static uint32_t seed = 20;
+
+static uint32_t draw(uint32_t count)
+{
+    seed = fl_lowbias32(seed + 1);
+    return seed % count;
+}
+
+static const int modifiers[] = {
+    0, 0, 0, GLFW_MOD_SHIFT, GLFW_MOD_CONTROL, GLFW_MOD_CONTROL | GLFW_MOD_SHIFT};
+
+static vw_event random_event(void)
+{
+    vw_event event = {.mods = modifiers[draw(FL_COUNT_OF(modifiers))], .action = (int)draw(3)};
+    switch (draw(8)) {
+    case 0:
+        event.kind = VW_EVENT_BUTTON;
+        event.code = (int)draw(3);
+        break;
+    case 1:
+        event.kind = VW_EVENT_SCROLL;
+        event.y = (double)draw(7) - 3.0;
+        break;
+    case 2:
+        event.kind = VW_EVENT_RESIZE;
+        event.width = 1 + draw(90);
+        event.height = 1 + draw(60);
+        break;
+    case 3:
+    case 4:
+        event.kind = VW_EVENT_CURSOR;
+        event.x = (double)draw(100) - 5.0;
+        event.y = (double)draw(70) - 5.0;
+        break;
+    default:
+        event.kind = draw(30) ? VW_EVENT_KEY : VW_EVENT_FOCUS;
+        event.code = draw(3) ? GLFW_KEY_SPACE + (int)draw(64) : GLFW_KEY_ESCAPE + (int)draw(60);
+        break;
+    }
+    return event;
+}
+
+static void film_of(vw_session *session, char out_sha256[FL_SHA256_HEX + 1])
+{
+    fl_diags diags = {0};
+    fl_progress progress;
+    session->exact_samples = 2;
+    vw_session_set_limits(session);
+    assert_true(vw_session_restart(session, &diags));
+    assert_true(fl_render_wait(session->render, -1.0));
+    float *rgb = vw_session_mean(session, &progress, &diags);
+    assert_non_null(rgb);
+    assert_int_equal(progress.complete_samples, 2);
+    fl_digest_sha256(rgb, (size_t)progress.width * progress.height * 12, out_sha256);
+    free(rgb);
+}
+
+static void act(vw_session *session, vw_dirty dirty, fl_diags *diags)
+{
+    dirty = vw_session_answer(session, dirty, diags);
+    if (dirty & VW_DIRTY_SCENE)
+        assert_true(vw_session_load(session, VIEWER_TEST_SCENE, diags));
+    if (dirty & (VW_DIRTY_CAMERA | VW_DIRTY_SCENE))
+        assert_true(vw_session_restart(session, diags));
+    if (dirty & VW_DIRTY_LIMITS)
+        vw_session_set_limits(session);
+    if (dirty & VW_DIRTY_TONEMAP)
+        session->revision = 0;
+    /* Costs grow with these alone; a day is not enough for all that a user may ask for. */
+    session->state.look.depth_limit = fl_min_u32(session->state.look.depth_limit, 8);
+    session->state.look.light_samples = fl_min_u32(session->state.look.light_samples, 4);
+}
+
+static void random_inputs_leave_no_trace_in_the_film(void **unused)
+{
+    (void)unused;
+    printf("seed %u, %u inputs\n", seed, input_count);
+    vw_options options = viewer_test_options();
+    vw_session session, fresh;
+    fl_diags diags = {0};
+    assert_true(vw_session_open(&session, &options, VIEWER_TEST_SCENE, 0, 0, &diags));
+    assert_true(vw_session_start(&session, NULL, NULL, &diags));
+    assert_true(vw_session_restart(&session, &diags));
+    session.is_replay = true;
+    uint64_t ms = 0;
+    for (uint32_t i = 0; i < input_count; i++) {
+        vw_event event = random_event();
+        ms += draw(40);
+        act(&session, vw_input_event(&session.input, &session.state, &event, ms), &diags);
+        if (vw_session_refresh(&session, &diags))
+            assert_non_null(vw_session_shown(&session));
+        char notes[512];
+        vw_session_notes(&session, notes, sizeof notes);
+        if (diags.error_count)
+            fail_msg("input %u: %s", i, diags.items[0].message);
+    }
+    char after[FL_SHA256_HEX + 1], want[FL_SHA256_HEX + 1];
+    film_of(&session, after);
+    assert_true(vw_session_open(&fresh, &options, VIEWER_TEST_SCENE, session.state.width,
+                                session.state.height, &diags));
+    assert_true(vw_session_start(&fresh, NULL, NULL, &diags));
+    fresh.state.look = session.state.look;
+    film_of(&fresh, want);
+    assert_string_equal(after, want);
+    vw_session_close(&session);
+    vw_session_close(&fresh);
+}
+
+int main(int argc, char **argv)
+{
+    double count;
+    if (argc > 1 && fl_number_parse(argv[1], argv[1] + strlen(argv[1]), &count))
+        input_count = (uint32_t)count;
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(random_inputs_leave_no_trace_in_the_film),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,149 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# A real window under Xvfb, driven by xdotool: picture, help, flying, snapshot, idle, quit; and no display at all.
+# usage: xvfb.sh FIRSTLIGHT SCENE [FOLDER for the screenshots, kept]. Exit 77: the tools are not here.
+# Nothing waits by guess: each step waits for a line that the viewer prints.
+set -euo pipefail
+
+for tool in xvfb-run xdotool import compare identify; do
+    command -v "$tool" >/dev/null || { echo "skipped: $tool is not installed"; exit 77; }
+done
+if [ -z "${FL_UNDER_XVFB:-}" ]; then
+    FL_UNDER_XVFB=1 exec xvfb-run -a -s '-screen 0 1024x768x24' "$0" "$@"
+fi
+
+[ -x "$1" ] || { echo "FAILED: no program $1"; exit 1; }
+program=$(realpath "$1") scene=$(realpath "$2")
+folder=${3:-}
+work=$(mktemp -d) viewer=
+cleanup() {
+    [ -z "$viewer" ] || kill "$viewer" 2>/dev/null || true
+    rm -rf "$work"
+}
+trap cleanup EXIT
+shots=${folder:-$work}
+mkdir -p "$shots"
+shots=$(realpath "$shots")
+cd "$work"
+
+fail() { echo "FAILED: $*"; exit 1; }
+
+# Wait for a line that begins with $1; it is left in $line.
+expect() {
+    while read -r -t 60 line <&3; do
+        case $line in "$1"*) return 0 ;; esac
+    done
+    fail "no line '$1...' came"
+}
+
+shoot() { import -window "$window" "$shots/$1.png"; }
+differing() { compare -metric AE "$shots/$1.png" "$shots/$2.png" null: 2>&1 || true; }
+
+# Everything sent before has been handled and drawn when the second of two answers is there.
+settle() {
+    for answer in 1 2; do
+        xdotool key --clearmodifiers c
+        expect --camera
+    done
+}
+
+mkfifo lines
+cp "$scene" live.txt
+scene=$work/live.txt
+"$program" view "$scene" --samples 16 --record session.log >lines 2>errors &
+viewer=$!
+exec 3<lines
+window=$(xdotool search --sync --onlyvisible --name firstlight | head -1)
+xdotool windowfocus --sync "$window"
+expect 'done 16 samples'
+xdotool windowsize --sync "$window" 640 480
+expect 'done 16 samples' # again, at the new size
+
+xdotool key F11
+settle
+xdotool key F11
+settle
+shoot picture
+[ "$(identify -format '%w %h' "$shots/picture.png")" = '640 480' ] || fail 'the window was not resized'
+[ "$(identify -format %k "$shots/picture.png")" -gt 1000 ] || fail 'the window shows no picture'
+
+xdotool key F1
+settle
+shoot help
+[ "$(differing picture help | cut -d. -f1)" -gt 50000 ] || fail 'the help does not show'
+xdotool key F1 F1 # the second page, and away
+
+xdotool keydown d
+settle
+xdotool keyup d
+expect 'done 16 samples'
+settle
+shoot flown
+[ "$(differing picture flown | cut -d. -f1)" -gt 50000 ] || fail 'flying does not show'
+
+xdotool key F12
+expect 'saved firstlight-001.png 16 samples'
+[ "$(identify -format '%w %h' firstlight-001.png)" = '640 480' ] || fail 'the snapshot has another size'
+
+# At rest: count clock ticks over a measured second.
+ticks() { awk '{print $14 + $15}' "/proc/$viewer/stat"; }
+settle
+xdotool sleep 3 # the message goes
+before=$(ticks)
+xdotool sleep 2
+used=$(($(ticks) - before))
+[ "$used" -le 2 ] || fail "at rest it used $used ticks of 200"
+
+# Bookmarks stand beside the scene; what the clipboard holds comes back.
+settle
+camera=$line
+xdotool key ctrl+1
+xdotool keydown d
+settle
+xdotool keyup d
+settle
+[ "$line" != "$camera" ] || fail 'flying does not move the camera'
+[ -s live.txt.views ] || fail 'no bookmarks beside the scene'
+xdotool key 1
+settle
+[ "$line" = "$camera" ] || fail 'the bookmark is not where it was set'
+xdotool key ctrl+z
+settle
+[ "$line" != "$camera" ] || fail 'undo does nothing'
+xdotool key ctrl+y
+settle
+[ "$line" = "$camera" ] || fail 'redo does nothing'
+
+# A scene that is saved is read again by itself; a broken one leaves the picture and says where.
+xdotool key R
+while read -r -t 2 line <&3; do :; done # What is still to come of all that.
+shoot before
+sed -i 's/diffuseColor 0.8 0.12 0.08/diffuseColor 0.1 0.2 0.9/' live.txt
+expect 'done 16 samples'
+settle
+shoot reloaded
+[ "$(differing before reloaded | cut -d. -f1)" -gt 5000 ] || fail 'the changed scene does not show'
+cp live.txt good.txt
+sed -i 's/radius 0.7/radios 0.7/' live.txt
+until settle; shoot broken; [ "$(differing reloaded broken | cut -d. -f1)" -gt 20000 ]; do :; done
+cp good.txt live.txt
+expect 'done 16 samples'
+
+xdotool key ctrl+q
+code=0
+wait "$viewer" || code=$?
+viewer=
+[ "$code" = 0 ] || fail "exit code $code: $(cat errors)"
+[ ! -s errors ] || fail "standard error: $(cat errors)"
+grep -q '^[0-9]* quit$' session.log || fail 'the log does not end'
+"$program" replay session.log --quiet >/dev/null || fail 'the recorded log does not replay'
+
+# The snapshot opens where it was taken.
+"$program" render firstlight-001.png -o again.png --quiet || fail 'the snapshot does not open'
+cmp -s firstlight-001.png again.png || fail 'the snapshot opened gives other bytes'
+
+code=0
+env -u DISPLAY -u WAYLAND_DISPLAY "$program" view "$scene" 2>errors || code=$?
+[ "$code" = 4 ] || fail "without a display the exit code is $code"
+grep -q 'firstlight render' errors || fail 'no word about rendering without a display'
+echo "passed; at rest $used ticks of 200"
