@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Embree 3 behind bench_peer.h. Modes are its calls: a single ray, packets of eight, streams; each as coherent or
- * incoherent where the call takes the flag. Time to lay rays out is not counted.
+ * Embree 3 behind bench_peer.h. Modes are its calls: a single ray, packets of eight, streams; each
+ * as coherent or incoherent where the call takes the flag. Time to lay rays out is not counted.
  */
 #include <embree3/rtcore.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -13,7 +14,8 @@
 
 enum { SINGLE, EIGHT_COHERENT, EIGHT, STREAM_COHERENT, STREAM, MODE_COUNT, STREAM_RAYS = 64 };
 
-static const char *const mode_names[MODE_COUNT] = {"1", "8 coherent", "8", "stream coherent", "stream"};
+static const char *const mode_names[MODE_COUNT] = {"1", "8 coherent", "8", "stream coherent",
+                                                   "stream"};
 
 typedef struct peer_scene {
     RTCDevice device;
@@ -24,15 +26,15 @@ typedef struct peer_rays {
     uint32_t count, mode;
     bool is_any;
     float *t_max;
-    struct RTCRayHit *one;   /* Single rays and streams: nearest. */
-    struct RTCRay *one_any;  /* The same: any hit. */
+    struct RTCRayHit *one;  /* Single rays and streams: nearest. */
+    struct RTCRay *one_any; /* The same: any hit. */
     struct RTCRayHit8 *eight;
 } peer_rays;
 
-static double now(clockid_t clock)
+static double cpu_seconds(void)
 {
     struct timespec t;
-    clock_gettime(clock, &t);
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
@@ -46,30 +48,34 @@ static void scene_destroy(void *scene)
     free(s);
 }
 
-static void *scene_build(const float *position, uint32_t position_count, const uint32_t *index, uint32_t face_count,
-                         bool is_robust, uint32_t thread_count, double *out_seconds)
+static void *scene_build(const float *position, uint32_t position_count, const uint32_t *index,
+                         uint32_t face_count, bool is_robust, const char *config,
+                         double *out_seconds)
 {
     peer_scene *s = calloc(1, sizeof *s);
     if (!s)
         return NULL;
-    s->device = rtcNewDevice(thread_count == 1 ? "threads=1" : "threads=2");
+    char settings[256];
+    snprintf(settings, sizeof settings, "threads=1%s%s", *config ? "," : "", config);
+    s->device = rtcNewDevice(settings);
     if (!s->device) {
         free(s);
         return NULL;
     }
     s->scene = rtcNewScene(s->device);
     RTCGeometry g = rtcNewGeometry(s->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, position, 0, 12, position_count);
-    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, index, 0, 12, face_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, position, 0, 12,
+                               position_count);
+    rtcSetSharedGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, index, 0, 12,
+                               face_count);
     rtcCommitGeometry(g);
     rtcAttachGeometry(s->scene, g);
     rtcReleaseGeometry(g);
     rtcSetSceneBuildQuality(s->scene, RTC_BUILD_QUALITY_MEDIUM);
     rtcSetSceneFlags(s->scene, is_robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
-    clockid_t clock = thread_count == 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_MONOTONIC;
-    double begin = now(clock);
+    double begin = cpu_seconds();
     rtcCommitScene(s->scene);
-    *out_seconds = now(clock) - begin;
+    *out_seconds = cpu_seconds() - begin;
     return s;
 }
 
@@ -88,14 +94,14 @@ static void rays_unload(void *set)
 static struct RTCRay ray_of(const fl_rays *rays, uint32_t i)
 {
     return (struct RTCRay){.org_x = rays->ox[i],
-                    .org_y = rays->oy[i],
-                    .org_z = rays->oz[i],
-                    .dir_x = rays->dx[i],
-                    .dir_y = rays->dy[i],
-                    .dir_z = rays->dz[i],
-                    .tfar = rays->t_max[i],
-                    .mask = ~0u,
-                    .id = i};
+                           .org_y = rays->oy[i],
+                           .org_z = rays->oz[i],
+                           .dir_x = rays->dx[i],
+                           .dir_y = rays->dy[i],
+                           .dir_z = rays->dz[i],
+                           .tfar = rays->t_max[i],
+                           .mask = ~0u,
+                           .id = i};
 }
 
 static void fill_eight(struct RTCRayHit8 *packet, uint32_t k, const struct RTCRay *ray)
@@ -116,7 +122,8 @@ static void *rays_load(const fl_rays *rays, uint32_t mode, bool is_any)
     peer_rays *r = calloc(1, sizeof *r);
     if (!r)
         return NULL;
-    uint32_t count = (rays->count + STREAM_RAYS - 1) / STREAM_RAYS * STREAM_RAYS, groups = count / 8;
+    uint32_t count = (rays->count + STREAM_RAYS - 1) / STREAM_RAYS * STREAM_RAYS,
+             groups = count / 8;
     *r = (peer_rays){.count = rays->count, .mode = mode, .is_any = is_any};
     bool is_eight = mode == EIGHT || mode == EIGHT_COHERENT;
     r->t_max = calloc(count, sizeof *r->t_max);
@@ -171,7 +178,8 @@ static void rays_trace(void *scene, void *set)
     bool is_coherent = r->mode == EIGHT_COHERENT || r->mode == STREAM_COHERENT;
     struct RTCIntersectContext c;
     rtcInitIntersectContext(&c);
-    c.flags = is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+    c.flags =
+        is_coherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     if (r->eight) {
         static const _Alignas(32) int all[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
         for (uint32_t k = 0; k < (r->count + 7) / 8; k++)

@@ -65,8 +65,8 @@ bool bench_mesh_load(const char *path, bench_mesh *out, fl_diags *diags)
     return ok;
 }
 
-/* A point of the cube [-1, 1]^3 pushed to the sphere, which depends on the point alone: faces of the cube meet
- * without cracks. */
+/* A point of the cube [-1, 1]^3 pushed to the sphere, which depends on the point alone: faces of
+ * the cube meet without cracks. */
 static void sphere_point(const double cube[3], float out[3])
 {
     fl_vec3 n = fl_v3_normalize(fl_v3(cube[0], cube[1], cube[2]));

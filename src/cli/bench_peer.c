@@ -6,13 +6,15 @@
 
 #include "cli/bench_run.h"
 
-const bench_peer *bench_peer_load(const char *name, fl_diags *diags)
+const bench_peer *bench_peer_load(const char *name, const char **out_config, fl_diags *diags)
 {
+    int name_length = (int)strcspn(name, ":");
+    *out_config = name[name_length] ? name + name_length + 1 : "";
     char path[1024], file[128];
     ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
     path[length > 0 ? length : 0] = 0;
     char *slash = strrchr(path, '/');
-    snprintf(file, sizeof file, "firstlight-%s.so", name);
+    snprintf(file, sizeof file, "firstlight-%.*s.so", name_length, name);
     void *module = NULL;
     if (slash && (size_t)(slash + 1 - path) + strlen(file) < sizeof path) {
         strcpy(slash + 1, file);
@@ -22,7 +24,10 @@ const bench_peer *bench_peer_load(const char *name, fl_diags *diags)
         module = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     const bench_peer *peer = module ? dlsym(module, "bench_peer_module") : NULL;
     if (!peer)
-        fl_environment_error(diags, "no module '%s' for --against: it is built where its library is installed (%s)",
-                             file, strcmp(name, "embree") == 0 ? "libembree-dev" : name);
+        fl_environment_error(
+            diags,
+            "no module '%s' for --against: it is built where its library is installed "
+            "(embree: libembree-dev)",
+            file);
     return peer;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a module with another ray tracer offers to `firstlight bench --against NAME`: it is the shared library
- * firstlight-NAME.so beside the program, which exports one `bench_peer` called bench_peer_module. Nothing of it is
- * linked into the program. All calls come from one thread.
+ * What a module with another ray tracer offers to `firstlight bench --against NAME`: it is the
+ * shared library firstlight-NAME.so beside the program, which exports one `bench_peer` called
+ * bench_peer_module. Nothing of it is linked into the program. All calls come from one thread.
  */
 #ifndef CLI_BENCH_PEER_H
 #define CLI_BENCH_PEER_H
@@ -14,11 +14,12 @@ typedef struct bench_peer {
     /** Ways to trace a set of rays: names, and how many. */
     const char *const *modes;
     uint32_t mode_count;
-    /** Build over triangles, which must outlive it: 3 floats a position (and one float of slack behind the last), 3
-     *  indices a face. Adds build time in CPU seconds of this process. is_robust: no ray slips through an edge.
-     *  NULL: failed. */
-    void *(*build)(const float *position, uint32_t position_count, const uint32_t *index, uint32_t face_count,
-                   bool is_robust, uint32_t thread_count, double *out_seconds);
+    /** Build over triangles, which must outlive it: 3 floats a position (and one float of slack
+     * behind the last), 3 indices a face. Adds build time in CPU seconds of this process.
+     * is_robust: no ray slips through an edge. config: settings of its own, possibly "". NULL:
+     * failed. */
+    void *(*build)(const float *position, uint32_t position_count, const uint32_t *index,
+                   uint32_t face_count, bool is_robust, const char *config, double *out_seconds);
     void (*destroy)(void *scene);
     /** Lay rays out as mode `mode` likes them. NULL: out of memory. */
     void *(*load)(const fl_rays *rays, uint32_t mode, bool is_any);

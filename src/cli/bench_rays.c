@@ -5,8 +5,8 @@
 
 #include "cli/bench_work.h"
 
-const char *const bench_kind_names[BENCH_KIND_COUNT] = {"primary", "primary-lens", "shadow", "mirror",
-                                                        "incoherent"};
+const char *const bench_kind_names[BENCH_KIND_COUNT] = {"primary", "primary-lens", "shadow",
+                                                        "mirror", "incoherent"};
 
 static const double two_pi = 6.28318530717958647692;
 
@@ -73,7 +73,8 @@ static void generate_camera(bench_rays *out, fl_vec3 shift, uint32_t side)
     for (uint32_t i = 0; i < side * side; i++) {
         uint32_t x, y;
         pixel_at(i, side, &x, &y);
-        double sx = ((x + 0.5) / side * 2.0 - 1.0) * half, sy = (1.0 - (y + 0.5) / side * 2.0) * half;
+        double sx = ((x + 0.5) / side * 2.0 - 1.0) * half,
+               sy = (1.0 - (y + 0.5) / side * 2.0) * half;
         fl_vec3 d = fl_v3_mad(fl_v3_mad(w, h, sx), v, sy), o = fl_v3_sub(eye, shift);
         if (out->kind == BENCH_LENS) {
             double r = aperture * sqrt(unit_number(i, 0)), turn = two_pi * unit_number(i, 1);

@@ -52,23 +52,25 @@ typedef struct row {
 static void add_row(const bench_setup *setup, const row *r)
 {
     if (!setup->rows) {
-        printf("%-12s %8u  %-12s %8.2f M/s %7.2f nodes %7.2f tests", r->mesh->name, r->mesh->face_count, r->kind,
-               r->mrays, r->node_visits, r->primitive_tests);
+        printf("%-12s %8u  %-12s %8.2f M/s %7.2f nodes %7.2f tests", r->mesh->name,
+               r->mesh->face_count, r->kind, r->mrays, r->node_visits, r->primitive_tests);
         if (r->peer)
-            printf("  %s %-22s %8.2f M/s  ratio %.2f (%.2f to %.2f), %u differ", r->peer, r->peer_mode, r->peer_mrays,
-                   r->ratio.median, r->ratio.min, r->ratio.max, r->mismatches);
+            printf("  %s %-22s %8.2f M/s  ratio %.2f (%.2f to %.2f), %u differ", r->peer,
+                   r->peer_mode, r->peer_mrays, r->ratio.median, r->ratio.min, r->ratio.max,
+                   r->mismatches);
         putchar('\n');
         fflush(stdout);
         return;
     }
     json_t *line = json_pack("{s:s, s:I, s:s, s:f, s:f, s:f}", "mesh", r->mesh->name, "triangles",
-                             (json_int_t)r->mesh->face_count, "kind", r->kind, "mrays", r->mrays, "node_visits",
-                             r->node_visits, "primitive_tests", r->primitive_tests);
-    json_t *peer = r->peer ? json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:I}", "peer", r->peer, "peer_mode",
-                                       r->peer_mode, "peer_mrays", r->peer_mrays, "ratio", r->ratio.median,
-                                       "ratio_min", r->ratio.min, "ratio_max", r->ratio.max, "mismatches",
-                                       (json_int_t)r->mismatches)
-                           : json_pack("{s:n}", "peer");
+                             (json_int_t)r->mesh->face_count, "kind", r->kind, "mrays", r->mrays,
+                             "node_visits", r->node_visits, "primitive_tests", r->primitive_tests);
+    json_t *peer = r->peer
+                       ? json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:I}", "peer", r->peer,
+                                   "peer_mode", r->peer_mode, "peer_mrays", r->peer_mrays, "ratio",
+                                   r->ratio.median, "ratio_min", r->ratio.min, "ratio_max",
+                                   r->ratio.max, "mismatches", (json_int_t)r->mismatches)
+                       : json_pack("{s:n}", "peer");
     json_object_update(line, peer);
     json_decref(peer);
     json_array_append_new(setup->rows, line);
@@ -129,8 +131,8 @@ static bool choose_mode(const opponent *o, bool is_robust, const bench_rays *ray
     return true;
 }
 
-/* Rays whose answers differ: one hits and the other does not, or the distances do. Another face at the same distance
- * is a common edge. */
+/* Rays whose answers differ: one hits and the other does not, or the distances do. Another face at
+ * the same distance is a common edge. */
 static uint32_t count_mismatches(const bench_peer *peer, const contender *c, const bench_rays *rays)
 {
     uint32_t count = 0, face;
@@ -147,8 +149,8 @@ static uint32_t count_mismatches(const bench_peer *peer, const contender *c, con
     return count;
 }
 
-static bool run_kind(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene, const opponent *o,
-                     bench_rays *rays)
+static bool run_kind(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene,
+                     const opponent *o, bench_rays *rays)
 {
     contender other[2];
     uint32_t others = o->peer ? 2 : 0, rounds = setup->rounds;
@@ -189,7 +191,8 @@ static bool run_kind(const bench_setup *setup, const bench_mesh *mesh, const fl_
     return true;
 }
 
-static bool run_kinds(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene, const opponent *o)
+static bool run_kinds(const bench_setup *setup, const bench_mesh *mesh, const fl_compiled *scene,
+                      const opponent *o)
 {
     bench_rays primary = {0}, rays = {0};
     bool ok = true;
@@ -208,7 +211,8 @@ static bool run_kinds(const bench_setup *setup, const bench_mesh *mesh, const fl
 /* --- Building -------------------------------------------------------------------------------- */
 
 /* Both build again and again, in turn; the last of each stay. */
-static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compiled **out_scene, opponent *o)
+static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compiled **out_scene,
+                      opponent *o)
 {
     double ours[BENCH_ROUNDS_MAX], theirs[BENCH_ROUNDS_MAX], ratio[BENCH_ROUNDS_MAX];
     uint32_t rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
@@ -222,22 +226,23 @@ static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compi
         if (!o->peer)
             continue;
         o->peer->destroy(o->scene[0]);
-        o->scene[0] = o->peer->build(mesh->position, mesh->position_count, mesh->index, mesh->face_count, false, 1,
-                                     &theirs[r]);
+        o->scene[0] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
+                                     mesh->face_count, false, setup->peer_config, &theirs[r]);
         if (!o->scene[0])
             return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
         ratio[r] = theirs[r] / ours[r];
     }
     double n = mesh->face_count;
-    row line = {.mesh = mesh, .kind = "build", .mrays = n / bench_figure_of(ours, rounds).median * 1e-6};
+    row line = {
+        .mesh = mesh, .kind = "build", .mrays = n / bench_figure_of(ours, rounds).median * 1e-6};
     if (o->peer) {
         double seconds;
         line.peer = o->peer->name;
         line.peer_mode = "medium";
         line.peer_mrays = n / bench_figure_of(theirs, rounds).median * 1e-6;
         line.ratio = bench_figure_of(ratio, rounds);
-        o->scene[1] = o->peer->build(mesh->position, mesh->position_count, mesh->index, mesh->face_count, true, 1,
-                                     &seconds);
+        o->scene[1] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
+                                     mesh->face_count, true, setup->peer_config, &seconds);
         if (!o->scene[1])
             return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
     }

@@ -5,7 +5,8 @@
 
 #include "cli/bench_run.h"
 
-/* A loop that touches registers only, on every thread: what this machine's threads could add at best right now. */
+/* A loop that touches registers only, on every thread: what this machine's threads could add at
+ * best right now. */
 static void spin(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 {
     (void)thread;
@@ -19,7 +20,8 @@ static void spin(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 
 enum { SPIN_PIECES = 16 };
 
-/* Wall seconds of the register loop by `thread_count` threads; infinite if they could not be started. */
+/* Wall seconds of the register loop by `thread_count` threads; infinite if they could not be
+ * started. */
 static double spin_seconds(uint32_t thread_count, fl_diags *diags)
 {
     double sink[8 * SPIN_PIECES];
@@ -34,7 +36,8 @@ static double spin_seconds(uint32_t thread_count, fl_diags *diags)
 }
 
 /* One render to 16 samples. */
-static bool render_once(const cli_scene *scene, uint32_t thread_count, fl_progress *out, fl_diags *diags)
+static bool render_once(const cli_scene *scene, uint32_t thread_count, fl_progress *out,
+                        fl_diags *diags)
 {
     const fl_render_options options = {.thread_count = thread_count};
     const fl_render_limits limits = {.samples = 16};
@@ -55,7 +58,8 @@ typedef struct times {
     fl_progress last;
 } times;
 
-static bool render_round(const cli_scene *scene, uint32_t thread_count, uint32_t round, times *t, fl_diags *diags)
+static bool render_round(const cli_scene *scene, uint32_t thread_count, uint32_t round, times *t,
+                         fl_diags *diags)
 {
     fl_progress *p = &t->last;
     if (!render_once(scene, thread_count, p, diags))
@@ -67,30 +71,33 @@ static bool render_round(const cli_scene *scene, uint32_t thread_count, uint32_t
     return true;
 }
 
-static void report(const bench_setup *setup, const cli_scene *scene, const char *kind, times *t, double speedup,
-                   double possible)
+static void report(const bench_setup *setup, const cli_scene *scene, const char *kind, times *t,
+                   double speedup, double possible)
 {
     uint32_t n = setup->rounds;
     const fl_counts *c = &t->last.counts;
     double rays = (double)(c->camera_rays + c->shadow_rays + c->reflect_rays + c->refract_rays);
-    bench_figure picture = bench_figure_of(t->first_picture, n), sample = bench_figure_of(t->first_sample, n),
-                 all = bench_figure_of(t->all, n), cpu = bench_figure_of(t->cpu, n);
+    bench_figure picture = bench_figure_of(t->first_picture, n),
+                 sample = bench_figure_of(t->first_sample, n), all = bench_figure_of(t->all, n),
+                 cpu = bench_figure_of(t->cpu, n);
     if (!setup->rows) {
-        printf("%-22s %-9s first picture %7.2f ms, first sample %8.2f ms, 16 samples %8.1f ms (%.1f to %.1f), "
+        printf("%-22s %-9s first picture %7.2f ms, first sample %8.2f ms, 16 samples %8.1f ms "
+               "(%.1f to %.1f), "
                "%6.1f ns/ray of CPU",
-               scene->path, kind, picture.median * 1e3, sample.median * 1e3, all.median * 1e3, all.min * 1e3,
-               all.max * 1e3, cpu.median / rays * 1e9);
+               scene->path, kind, picture.median * 1e3, sample.median * 1e3, all.median * 1e3,
+               all.min * 1e3, all.max * 1e3, cpu.median / rays * 1e9);
         if (possible > 0.0)
             printf(", threads give %.2f of %.2f that a register loop gets", speedup, possible);
         putchar('\n');
         fflush(stdout);
         return;
     }
-    json_t *line = json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:I, s:f}", "scene", scene->path, "kind", kind,
-                             "first_picture_ms", picture.median * 1e3, "first_sample_ms", sample.median * 1e3,
-                             "samples16_ms", all.median * 1e3, "cpu_ms", cpu.median * 1e3, "mrays",
-                             rays / cpu.median * 1e-6, "rays", (json_int_t)rays, "node_visits",
-                             (double)c->isect.node_visits / rays);
+    json_t *line =
+        json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:I, s:f}", "scene", scene->path, "kind",
+                  kind, "first_picture_ms", picture.median * 1e3, "first_sample_ms",
+                  sample.median * 1e3, "samples16_ms", all.median * 1e3, "cpu_ms", cpu.median * 1e3,
+                  "mrays", rays / cpu.median * 1e-6, "rays", (json_int_t)rays, "node_visits",
+                  (double)c->isect.node_visits / rays);
     if (possible > 0.0) {
         json_object_set_new(line, "speedup", json_real(speedup));
         json_object_set_new(line, "speedup_possible", json_real(possible));
@@ -104,7 +111,8 @@ bool bench_scene_run(const bench_setup *setup, const cli_scene *scene, uint32_t 
     double speedup[BENCH_ROUNDS_MAX], possible[BENCH_ROUNDS_MAX];
     uint32_t threads = fl_thread_count(thread_count);
     for (uint32_t r = 0; r < setup->rounds; r++) {
-        if (!render_round(scene, 1, r, &one, setup->diags) || !render_round(scene, threads, r, &many, setup->diags))
+        if (!render_round(scene, 1, r, &one, setup->diags) ||
+            !render_round(scene, threads, r, &many, setup->diags))
             return false;
         speedup[r] = one.all[r] / many.all[r];
         possible[r] = spin_seconds(1, setup->diags) / spin_seconds(threads, setup->diags);

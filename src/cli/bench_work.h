@@ -22,8 +22,8 @@ extern const char *const bench_kind_names[BENCH_KIND_COUNT];
 /** Triangles in world space. Owned. */
 typedef struct bench_mesh {
     char name[64];
-    float *position;  /**< 3 * position_count */
-    uint32_t *index;  /**< 3 * face_count */
+    float *position; /**< 3 * position_count */
+    uint32_t *index; /**< 3 * face_count */
     uint32_t position_count, face_count;
 } bench_mesh;
 

@@ -28,14 +28,16 @@ static bool run_path(const cli_options *options, const bench_setup *setup, const
     if (sscanf(path, "sphere:%u%c", &faces, &rest) == 1 || is_mesh_file(path)) {
         bench_mesh mesh = {0};
         bool is_sphere = strncmp(path, "sphere:", 7) == 0;
-        bool ok = is_sphere ? bench_mesh_sphere(fl_min_u32(fl_max_u32(faces, 12), 100 * MILLION), &mesh, setup->diags)
+        bool ok = is_sphere ? bench_mesh_sphere(fl_min_u32(fl_max_u32(faces, 12), 100 * MILLION),
+                                                &mesh, setup->diags)
                             : bench_mesh_load(path, &mesh, setup->diags);
         ok = ok && bench_mesh_run(setup, &mesh);
         bench_mesh_deinit(&mesh);
         return ok;
     }
     cli_scene scene = {.diags = setup->diags};
-    bool ok = cli_scene_open(options, path, &scene) && bench_scene_run(setup, &scene, options->threads);
+    bool ok =
+        cli_scene_open(options, path, &scene) && bench_scene_run(setup, &scene, options->threads);
     cli_scene_close(&scene);
     return ok;
 }
@@ -44,7 +46,7 @@ static bool run_path(const cli_options *options, const bench_setup *setup, const
 static bool run_default(const cli_options *options, const bench_setup *setup)
 {
     static const char *const paths[] = {"assets/bunny_1k.obj", "assets/bunny.obj", "sphere:1000000",
-                                        "scenes/vase.txt",     "scenes/bunny.txt"};
+                                        "scenes/vase.txt", "scenes/bunny.txt"};
     bool ok = true;
     for (size_t i = 0; ok && i < FL_COUNT_OF(paths) && !cli_was_interrupted(); i++)
         if (strchr(paths[i], ':') || access(paths[i], R_OK) == 0)
@@ -58,7 +60,8 @@ int cli_command_bench(const cli_options *options)
     fl_diags diags = {0};
     bool is_json = cli_has(options, CLI_OPT_JSON);
     bench_setup setup = {.rounds = cli_has(options, CLI_OPT_REPEATS) ? options->repeats : ROUNDS,
-                         .side = cli_has(options, CLI_OPT_SIZE) ? (options->size[0] + 7) / 8 * 8 : SIDE,
+                         .side =
+                             cli_has(options, CLI_OPT_SIZE) ? (options->size[0] + 7) / 8 * 8 : SIDE,
                          .compile = {.accel = (fl_accel)options->accel,
                                      .has_isa = cli_has(options, CLI_OPT_ISA),
                                      .octree_height = options->octree_height},
@@ -71,7 +74,8 @@ int cli_command_bench(const cli_options *options)
              fl_environment_error(&diags, "this machine has no %s", options->isa);
     }
     if (options->against)
-        ok = ok && (setup.peer = bench_peer_load(options->against, &diags)) != NULL;
+        ok = ok &&
+             (setup.peer = bench_peer_load(options->against, &setup.peer_config, &diags)) != NULL;
     if (ok && options->path_count == 0)
         ok = run_default(options, &setup);
     for (uint32_t i = 0; ok && i < options->path_count && !cli_was_interrupted(); i++)

@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/picture.h"
+#include "cli/aov.h"
 #include "io/image_file.h"
 
 /* One line for programs: the keys are binding (docs/cli.md). */
@@ -55,9 +55,6 @@ static void print_summary(const cli_picture *picture)
 static bool outputs_are_writable(const cli_options *options, fl_diags *diags)
 {
     fl_pixel_format format;
-    uint32_t kinds;
-    if (options->aov && !cli_aov_parse(options->aov, &kinds, diags))
-        return false;
     for (uint32_t i = 0; i < options->output_count; i++)
         if (!fl_image_format_for(options->outputs[i], diags, &format))
             return false;
@@ -74,17 +71,20 @@ int cli_command_render(const cli_options *options)
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};
     cli_picture picture = {0};
-    if (outputs_are_writable(options, &diags) && cli_scene_open(options, options->paths[0], &scene)) {
+    cli_aovs aovs;
+    if (outputs_are_writable(options, &diags) && cli_aov_parse(options->aov, &aovs, &diags) &&
+        cli_scene_open(options, options->paths[0], &scene)) {
         fl_render_limits limits = {.samples = cli_sample_limit(options, &scene),
                                    .noise_rmse = options->noise,
                                    .seconds = options->time_s};
         bool is_quiet = cli_has(options, CLI_OPT_QUIET);
-        if (cli_picture_render(&scene, &limits, options->threads, is_quiet ? NULL : scene.path, &picture)) {
+        if (cli_picture_render(&scene, &limits, options->threads, is_quiet ? NULL : scene.path, aovs.maps,
+                               &picture)) {
             bool ok = true;
             for (uint32_t i = 0; i < options->output_count; i++)
                 ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;
             if (options->aov && options->output_count)
-                ok = cli_aov_save(&scene, options->aov, options->outputs[0], &diags) && ok;
+                ok = cli_aov_save(&scene, &picture, &aovs, options->outputs[0], &diags) && ok;
             if (cli_has(options, CLI_OPT_JSON))
                 print_json(&scene, &picture);
             else if (!is_quiet)

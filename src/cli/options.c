@@ -69,7 +69,7 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
     [CLI_OPT_OUTPUT] = {"output", 'o', "FILE", CLI_KIND_OUTPUT, AT(outputs), 0, 0, NULL, BIT(CLI_RENDER),
                         "picture to write: .png .exr .tif .bmp ...; may be repeated"},
     [CLI_OPT_AOV] = {"aov", 0, "NAMES", CLI_KIND_TEXT, AT(aov), 0, 0, NULL, BIT(CLI_RENDER),
-                     "what stands behind the pixels too: depth,normal,albedo,object,cost as NAME.depth.exr ..."},
+                     "what stands behind the pixels too: depth,normal,albedo,samples,error,cost as NAME.depth.exr ..."},
     [CLI_OPT_UPDATE] = {"update", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_CHECK),
                         "write the golden pictures instead of comparing"},
     [CLI_OPT_REPORT] = {"report", 0, "DIR", CLI_KIND_TEXT, AT(report), 0, 0, NULL, BIT(CLI_CHECK),

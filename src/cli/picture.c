@@ -48,6 +48,20 @@ static bool render_until_done(fl_render *render, const fl_render_limits *limits,
     return out->progress.state != FL_RENDER_FAILED;
 }
 
+/* The maps asked for, one float a pixel. */
+static bool take_maps(fl_render *render, uint32_t maps, cli_picture *out, fl_diags *diags)
+{
+    size_t pixels = (size_t)out->width * out->height;
+    for (uint32_t map = 0; map < CLI_MAP_COUNT; map++) {
+        if (!(maps >> map & 1u))
+            continue;
+        out->maps[map] = malloc(pixels * sizeof(float));
+        if (!out->maps[map] || !fl_render_copy_map(render, (fl_render_map)map, out->maps[map], pixels, &out->progress))
+            return fl_out_of_memory(diags, "the maps of the picture");
+    }
+    return true;
+}
+
 static bool take_picture(fl_render *render, cli_picture *out, fl_diags *diags)
 {
     out->width = out->progress.width;
@@ -63,7 +77,7 @@ static bool take_picture(fl_render *render, cli_picture *out, fl_diags *diags)
 }
 
 bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
-                        const char *progress_name, cli_picture *out)
+                        const char *progress_name, uint32_t maps, cli_picture *out)
 {
     *out = (cli_picture){0};
     fl_render_options options = {.thread_count = threads};
@@ -75,7 +89,7 @@ bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32
     if (ok && !render_until_done(render, limits, progress_name, out))
         ok = fl_out_of_memory(scene->diags, "rendering");
     if (ok)
-        ok = take_picture(render, out, scene->diags);
+        ok = take_picture(render, out, scene->diags) && take_maps(render, maps, out, scene->diags);
     fl_render_destroy(render);
     if (!ok)
         cli_picture_close(out);
@@ -86,6 +100,10 @@ void cli_picture_close(cli_picture *picture)
 {
     free(picture->rgb);
     picture->rgb = NULL;
+    for (uint32_t map = 0; map < CLI_MAP_COUNT; map++) {
+        free(picture->maps[map]);
+        picture->maps[map] = NULL;
+    }
 }
 
 uint8_t *cli_picture_bytes(const cli_picture *picture, const fl_params *params, fl_diags *diags)
@@ -125,61 +143,5 @@ bool cli_picture_save(const cli_picture *picture, const cli_scene *scene, const 
     }
     bool ok = fl_image_save(path, &image, texts.items, FL_COUNT_OF(texts.items), diags);
     free(bytes);
-    return ok;
-}
-
-bool cli_aov_parse(const char *names, uint32_t *out_kinds, fl_diags *diags)
-{
-    *out_kinds = 0;
-    while (*names) {
-        size_t bytes = strcspn(names, ",");
-        uint32_t kind = 0;
-        while (kind < FL_AOV_COUNT &&
-               (strlen(fl_aov_names[kind]) != bytes || memcmp(fl_aov_names[kind], names, bytes) != 0))
-            kind++;
-        if (kind == FL_AOV_COUNT) {
-            const char *nearest = fl_nearest_name(names, bytes, fl_aov_names, FL_AOV_COUNT);
-            return fl_error(diags, (fl_loc){0}, "--aov does not know '%.*s'%s%s%s", (int)bytes, names,
-                            nearest ? "; did you mean '" : ": depth normal albedo object shape cost",
-                            nearest ? nearest : "", nearest ? "'?" : "");
-        }
-        *out_kinds |= 1u << kind;
-        names += bytes + (names[bytes] == ',');
-    }
-    return true;
-}
-
-static bool save_aov(const fl_frame *frame, fl_aov kind, const char *path, fl_diags *diags)
-{
-    fl_aov_grid grid = {.step = 1, .width = frame->width, .height = frame->height};
-    float *values = malloc((size_t)grid.width * grid.height * 3 * sizeof *values);
-    bool ok = values && fl_aov_eval(frame, kind, NULL, &grid, values);
-    fl_image image = {
-        .width = grid.width, .height = grid.height, .format = FL_PIXEL_FLOAT, .pixels = values};
-    ok = ok ? fl_image_save(path, &image, NULL, 0, diags) : fl_out_of_memory(diags, path);
-    free(values);
-    return ok;
-}
-
-bool cli_aov_save(const cli_scene *scene, const char *names, const char *path, fl_diags *diags)
-{
-    uint32_t kinds;
-    if (!cli_aov_parse(names, &kinds, diags))
-        return false;
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    size_t stem = dot ? (size_t)(dot - path) : strlen(path), room = stem + 32;
-    char *name = malloc(room);
-    fl_frame *frame = name ? fl_frame_create(scene->compiled, &scene->params, diags) : NULL;
-    bool ok = frame != NULL;
-    for (uint32_t kind = 0; kind < FL_AOV_COUNT && ok; kind++) {
-        if (!(kinds >> kind & 1u))
-            continue;
-        snprintf(name, room, "%.*s.%s.exr", (int)stem, path, fl_aov_names[kind]);
-        ok = save_aov(frame, (fl_aov)kind, name, diags);
-    }
-    fl_frame_release(frame);
-    if (!name)
-        fl_out_of_memory(diags, path);
-    free(name);
     return ok;
 }

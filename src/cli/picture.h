@@ -8,19 +8,23 @@
 #include "cli/load.h"
 #include "io/digest.h"
 
+enum { CLI_MAP_COUNT = FL_RENDER_ERROR + 1 }; /**< Of fl_render_map. */
+
 /** A finished (or interrupted) picture. */
 typedef struct cli_picture {
     uint32_t width, height;
     float *rgb; /**< Linear means, 3 * width * height, top row first; owned. */
+    float *maps[CLI_MAP_COUNT]; /**< By fl_render_map: width * height floats, or NULL where not asked for; owned. */
     char film_sha256[FL_SHA256_HEX + 1];
     fl_progress progress;
     bool was_interrupted;
 } cli_picture;
 
 /** Render with the scene's parameters until `limits` are met or a signal comes. `progress_name`: show progress under
- *  this name when standard error is a terminal, NULL: never. False after adding an error. */
+ *  this name when standard error is a terminal, NULL: never. `maps`: bit per fl_render_map to keep. False after adding
+ *  an error. */
 bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
-                        const char *progress_name, cli_picture *out);
+                        const char *progress_name, uint32_t maps, cli_picture *out);
 
 void cli_picture_close(cli_picture *picture);
 
@@ -30,12 +34,5 @@ uint8_t *cli_picture_bytes(const cli_picture *picture, const fl_params *params, 
 /** Write the picture to `path`; its extension chooses the format. State is stored as text keys where the format has
  *  room for it. False after adding an error. */
 bool cli_picture_save(const cli_picture *picture, const cli_scene *scene, const char *path, fl_diags *diags);
-
-/** Write what stands behind the pixels (aov.h) beside the picture at `path`: STEM.NAME.exr for every name of the
- *  comma-separated list. False after adding an error. */
-bool cli_aov_save(const cli_scene *scene, const char *names, const char *path, fl_diags *diags);
-
-/** Read such a list: bit per fl_aov. False after adding an error that names the wrong word. */
-bool cli_aov_parse(const char *names, uint32_t *out_kinds, fl_diags *diags);
 
 #endif

@@ -13,7 +13,8 @@
 enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024, HUGE_BYTES = 2 * 1024 * 1024 };
 
 /* Memory for a block. Large ones begin on a large page where the system has those: trees of many
- * megabytes are read here and there, and with small pages half of that time goes into finding them. */
+ * megabytes are read here and there, and with small pages half of that time goes into finding them.
+ */
 static void *block_memory(size_t bytes)
 {
 #if defined(__linux__)
@@ -21,7 +22,8 @@ static void *block_memory(size_t bytes)
         size_t rounded = (bytes + HUGE_BYTES - 1) / HUGE_BYTES * HUGE_BYTES;
         void *memory = aligned_alloc(HUGE_BYTES, rounded);
         if (memory)
-            madvise(memory, rounded, MADV_HUGEPAGE); /* Advice: it does not matter if it is not taken. */
+            madvise(memory, rounded,
+                    MADV_HUGEPAGE); /* Advice: it does not matter if it is not taken. */
         return memory;
     }
 #endif
@@ -30,7 +32,8 @@ static void *block_memory(size_t bytes)
 
 struct fl_arena_block {
     fl_arena_block *older;
-    size_t capacity_bytes, used_bytes; /* of the payload, which begins ALIGN bytes after the block */
+    size_t capacity_bytes,
+        used_bytes; /* of the payload, which begins ALIGN bytes after the block */
 };
 
 static void *block_payload(fl_arena_block *block)

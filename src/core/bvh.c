@@ -5,6 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* x y z and one lane to spare, whatever the machine: the tree is the same everywhere. */
+#define FL_W 4
+#include "core/wide.h"
+
 enum {
     BIN_COUNT = 16,
     SAH_DEPTH_MAX = 28,   /* Deeper, ranges are halved by count: 12 more levels reach any size. */
@@ -15,18 +19,20 @@ enum {
 _Static_assert((FL_BVH_WIDTH - 1) * (SAH_DEPTH_MAX + 12) + 1 <= FL_BVH_STACK_MAX,
                "stack too small");
 
+typedef struct wide_box {
+    fl_wf lo, hi;
+} wide_box;
+
 /* What is partitioned: boxes travel with their item, so every pass reads memory in order. */
 typedef struct item {
-    float lo[3];
-    uint32_t id;
-    float hi[3];
-    uint32_t unused; /* To 32 bytes. */
+    fl_wf lo; /* Fourth: the item's number, as bits. */
+    fl_wf hi; /* Fourth: 0. */
 } item;
 
 typedef struct range {
     uint32_t first, count;
-    fl_bvh_box box;
-    fl_bvh_box centers; /* Of lo + hi: twice the centres. */
+    wide_box box;
+    wide_box centers; /* Of lo + hi: twice the centres. */
 } range;
 
 /* Nodes and leaves of one subtree, with indices of their own; put together at the end. */
@@ -51,41 +57,50 @@ typedef struct builder {
     uint32_t pending_count, pending_capacity;
 } builder;
 
-static fl_bvh_box box_empty(void)
+static inline wide_box box_empty(void)
 {
-    return (fl_bvh_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    return (wide_box){{INFINITY, INFINITY, INFINITY, INFINITY},
+                      {-INFINITY, -INFINITY, -INFINITY, -INFINITY}};
 }
 
-static inline void box_grow(fl_bvh_box *box, const float lo[3], const float hi[3])
+static inline void box_grow(wide_box *box, fl_wf lo, fl_wf hi)
 {
-    for (int a = 0; a < 3; a++) {
-        box->lo[a] = lo[a] < box->lo[a] ? lo[a] : box->lo[a];
-        box->hi[a] = hi[a] > box->hi[a] ? hi[a] : box->hi[a];
-    }
+    box->lo = fl_wf_min(lo, box->lo);
+    box->hi = fl_wf_max(hi, box->hi);
 }
 
-static inline float box_half_area(const fl_bvh_box *box)
+static inline float box_half_area(const wide_box *box)
 {
-    float x = box->hi[0] - box->lo[0], y = box->hi[1] - box->lo[1], z = box->hi[2] - box->lo[2];
-    return x * y + y * z + z * x;
+    fl_wf side = box->hi - box->lo;
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+}
+
+/* The number is kept out of the sum: as a float it would be a slow one. */
+static inline fl_wf twice_center(const item *it)
+{
+    const fl_wi xyz = {-1, -1, -1, 0};
+    return (fl_wf)((fl_wi)it->lo & xyz) + it->hi;
+}
+
+static inline void range_grow(range *r, const item *it)
+{
+    fl_wf center = twice_center(it);
+    box_grow(&r->box, it->lo, it->hi);
+    box_grow(&r->centers, center, center);
 }
 
 static range range_of(const item *items, uint32_t first, uint32_t count)
 {
     range r = {first, count, box_empty(), box_empty()};
-    for (uint32_t i = first; i < first + count; i++) {
-        const item *it = &items[i];
-        float center[3] = {it->lo[0] + it->hi[0], it->lo[1] + it->hi[1], it->lo[2] + it->hi[2]};
-        box_grow(&r.box, it->lo, it->hi);
-        box_grow(&r.centers, center, center);
-    }
+    for (uint32_t i = first; i < first + count; i++)
+        range_grow(&r, &items[i]);
     return r;
 }
 
 /* --- Choosing a split ------------------------------------------------------------------------ */
 
 typedef struct bins {
-    fl_bvh_box box[BIN_COUNT];
+    wide_box box[BIN_COUNT];
     uint32_t count[BIN_COUNT];
 } bins;
 
@@ -95,9 +110,9 @@ typedef struct split {
     float cost;
 } split;
 
-static inline int bin_of(const item *it, int axis, float lo, float scale)
+static inline int bin_of(fl_wf center, int axis, float lo, float scale)
 {
-    int bin = (int)((it->lo[axis] + it->hi[axis] - lo) * scale);
+    int bin = (int)((center[axis] - lo) * scale);
     return bin < BIN_COUNT - 1 ? bin : BIN_COUNT - 1;
 }
 
@@ -111,7 +126,7 @@ static float bin_scale(const range *r, int axis)
 static void try_axis(const bins *b, int axis, split *best)
 {
     float right_cost[BIN_COUNT];
-    fl_bvh_box box = box_empty();
+    wide_box box = box_empty();
     uint32_t count = 0;
     for (int i = BIN_COUNT - 1; i > 0; i--) {
         box_grow(&box, b->box[i].lo, b->box[i].hi);
@@ -136,8 +151,9 @@ static split find_split(const item *items, const range *r)
 {
     split best = {-1, 0, INFINITY};
     bins b[3];
-    float scale[3];
+    float scale[3], lo[3];
     for (int a = 0; a < 3; a++) {
+        lo[a] = r->centers.lo[a];
         scale[a] = bin_scale(r, a);
         memset(b[a].count, 0, sizeof b[a].count);
         for (int i = 0; i < BIN_COUNT; i++)
@@ -145,8 +161,9 @@ static split find_split(const item *items, const range *r)
     }
     for (uint32_t i = r->first; i < r->first + r->count; i++) {
         const item *it = &items[i];
+        fl_wf center = twice_center(it);
         for (int a = 0; a < 3; a++) {
-            int bin = bin_of(it, a, r->centers.lo[a], scale[a]);
+            int bin = bin_of(center, a, lo[a], scale[a]);
             box_grow(&b[a].box[bin], it->lo, it->hi);
             b[a].count[bin]++;
         }
@@ -157,6 +174,31 @@ static split find_split(const item *items, const range *r)
     return best;
 }
 
+/* Put items of lower bins first; both sides are measured on the way. */
+static void partition(item *items, const range *r, const split *at, range *out_left,
+                      range *out_right)
+{
+    float scale = bin_scale(r, at->axis), lo = r->centers.lo[at->axis];
+    uint32_t i = r->first, j = r->first + r->count;
+    range left = {r->first, 0, box_empty(), box_empty()}, right = left;
+    while (i < j) {
+        item it = items[i];
+        if (bin_of(twice_center(&it), at->axis, lo, scale) < at->bin) {
+            range_grow(&left, &it);
+            i++;
+        } else {
+            range_grow(&right, &it);
+            items[i] = items[--j];
+            items[j] = it;
+        }
+    }
+    left.count = i - r->first;
+    right.first = i;
+    right.count = r->count - left.count;
+    *out_left = left;
+    *out_right = right;
+}
+
 /* Cut `r` in two. By count when no plane separates the centres, or far down a degenerate tree. */
 static void split_range(item *items, const range *r, uint32_t depth, range *out_left,
                         range *out_right)
@@ -164,21 +206,11 @@ static void split_range(item *items, const range *r, uint32_t depth, range *out_
     split best = {-1, 0, INFINITY};
     if (depth < SAH_DEPTH_MAX)
         best = find_split(items, r);
-    uint32_t left = r->count / 2;
     if (best.axis >= 0) {
-        float scale = bin_scale(r, best.axis), lo = r->centers.lo[best.axis];
-        uint32_t i = r->first, j = r->first + r->count;
-        while (i < j) {
-            if (bin_of(&items[i], best.axis, lo, scale) < best.bin) {
-                i++;
-            } else {
-                item swap = items[i];
-                items[i] = items[--j];
-                items[j] = swap;
-            }
-        }
-        left = i - r->first;
+        partition(items, r, &best, out_left, out_right);
+        return;
     }
+    uint32_t left = r->count / 2;
     *out_left = range_of(items, r->first, left);
     *out_right = range_of(items, r->first + left, r->count - left);
 }
@@ -218,6 +250,11 @@ static uint32_t add_node(tree *t)
     return t->node_count++;
 }
 
+static uint32_t item_number(const item *it)
+{
+    return (uint32_t)((fl_wi)it->lo)[3];
+}
+
 static uint32_t add_leaf(tree *t, const item *items, const range *r)
 {
     void *leaves = t->leaf_items;
@@ -229,7 +266,7 @@ static uint32_t add_leaf(tree *t, const item *items, const range *r)
     t->leaf_items = leaves;
     uint32_t *out = &t->leaf_items[(size_t)t->leaf_count * FL_BVH_WIDTH];
     for (uint32_t k = 0; k < FL_BVH_WIDTH; k++)
-        out[k] = k < r->count ? items[r->first + k].id : FL_NONE;
+        out[k] = k < r->count ? item_number(&items[r->first + k]) : FL_NONE;
     for (uint32_t k = 1; k < r->count; k++)
         for (uint32_t j = k; j > 0 && out[j] < out[j - 1]; j--) {
             uint32_t swap = out[j];
@@ -265,7 +302,7 @@ static uint32_t split_to_width(const builder *b, const range *r, uint32_t depth,
     return count;
 }
 
-static void set_child(const builder *b, fl_bvh_node *node, uint32_t k, const fl_bvh_box *box,
+static void set_child(const builder *b, fl_bvh_node *node, uint32_t k, const wide_box *box,
                       uint32_t child)
 {
     node->child[k] = child;
@@ -380,14 +417,17 @@ bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uin
     if (count > ITEM_COUNT_MAX)
         return false;
     tree top = {0};
-    builder b = {malloc(count * sizeof *b.items), pad, malloc(64 * sizeof *b.pending), 0, 64};
+    builder b = {aligned_alloc(64, (count * sizeof *b.items + 63) / 64 * 64), pad,
+                 malloc(64 * sizeof *b.pending), 0, 64};
     bool ok = b.items && b.pending;
     fl_bvh result = {.origin_pad = origin_pad};
     if (ok) {
         for (uint32_t i = 0; i < count; i++) {
-            memcpy(b.items[i].lo, boxes[i].lo, sizeof b.items[i].lo);
-            memcpy(b.items[i].hi, boxes[i].hi, sizeof b.items[i].hi);
-            b.items[i].id = i;
+            const float *lo = boxes[i].lo, *hi = boxes[i].hi;
+            fl_wi number = {0, 0, 0, (int32_t)i};
+            fl_wf low = {lo[0], lo[1], lo[2], 0.0f};
+            b.items[i].lo = (fl_wf)((fl_wi)low | number);
+            b.items[i].hi = (fl_wf){hi[0], hi[1], hi[2], 0.0f};
         }
         range all = range_of(b.items, 0, count);
         build_node(&b, &top, &all, 0);

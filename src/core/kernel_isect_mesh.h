@@ -81,7 +81,8 @@ FL_INLINE fl_wm corners_meet(const corners *c, fl_wf inverse_z, fl_wf *out_t, fl
 }
 
 /* Decide one pair in doubles. */
-static __attribute__((noinline)) bool corners_decide(const corners *c, int i, float d_z, float *out_t)
+static __attribute__((noinline)) bool corners_decide(const corners *c, int i, float d_z,
+                                                     float *out_t)
 {
     double x[3], y[3], z[3];
     for (int k = 0; k < 3; k++) {
@@ -124,32 +125,52 @@ FL_INLINE void needle_accept(needle *r, const mesh_target *target, float t, uint
     }
 }
 
+/* Corners of FL_W triangles of a pack, from place `at` on, for one ray; o along kx, ky and kz. */
+FL_INLINE corners pack_corners(const fl_tri_pack *pack, int at, const int k[3], const float o[3],
+                               float shear_x, float shear_y)
+{
+    corners c;
+    for (int n = 0; n < 3; n++) {
+        c.z[n] = fl_wf_load(&pack->corner[n][k[2]][at]) - o[2];
+        c.x[n] = fl_wf_load(&pack->corner[n][k[0]][at]) - o[0] - shear_x * c.z[n];
+        c.y[n] = fl_wf_load(&pack->corner[n][k[1]][at]) - o[1] - shear_y * c.z[n];
+    }
+    return c;
+}
+
+/* Enter the hits among FL_W triangles: lanes `sure` at t, lanes `doubts` if doubles say so. */
+FL_INLINE void needle_accept_all(needle *r, const mesh_target *target, const corners *c,
+                                 const uint32_t *face, fl_wf t, uint32_t sure, uint32_t doubts,
+                                 const bool is_any)
+{
+    for (; sure; sure &= sure - 1) {
+        int i = __builtin_ctz(sure);
+        needle_accept(r, target, t[i], face[i], is_any);
+    }
+    if (!doubts)
+        return;
+    const corners kept = *c; /* Which leaves c itself in registers. */
+    for (; doubts; doubts &= doubts - 1) {
+        int i = __builtin_ctz(doubts);
+        float exact;
+        if (corners_decide(&kept, i, r->d_z, &exact))
+            needle_accept(r, target, exact, face[i], is_any);
+    }
+}
+
 /** One ray against the eight triangles of a pack. */
 FL_INLINE void needle_meet_pack(needle *r, const mesh_target *target, const fl_tri_pack *pack,
                                 const bool is_any)
 {
+    const int k[3] = {r->kx, r->ky, r->kz};
+    const float o[3] = {r->o[r->kx], r->o[r->ky], r->o[r->kz]};
     for (int at = 0; at < 8; at += FL_W) {
-        corners c;
         fl_wf t;
         fl_wm doubt;
-        for (int k = 0; k < 3; k++) {
-            c.z[k] = fl_wf_load(&pack->corner[k][r->kz][at]) - r->o[r->kz];
-            c.x[k] = fl_wf_load(&pack->corner[k][r->kx][at]) - r->o[r->kx] - r->shear_x * c.z[k];
-            c.y[k] = fl_wf_load(&pack->corner[k][r->ky][at]) - r->o[r->ky] - r->shear_y * c.z[k];
-        }
+        corners c = pack_corners(pack, at, k, o, r->shear_x, r->shear_y);
         fl_wm sure = corners_meet(&c, fl_wf_set(r->inverse_z), &t, &doubt);
         uint32_t lanes = fl_wm_bits(sure & (t > 0.0f) & (t <= r->t));
-        for (; lanes; lanes &= lanes - 1) {
-            int i = __builtin_ctz(lanes);
-            needle_accept(r, target, t[i], pack->face[at + i], is_any);
-        }
-        for (lanes = fl_wm_bits(doubt); lanes; lanes &= lanes - 1) {
-            int i = __builtin_ctz(lanes);
-            const corners kept = c; /* Which leaves c itself in registers. */
-            float exact;
-            if (corners_decide(&kept, i, r->d_z, &exact))
-                needle_accept(r, target, exact, pack->face[at + i], is_any);
-        }
+        needle_accept_all(r, target, &c, pack->face + at, t, lanes, fl_wm_bits(doubt), is_any);
     }
 }
 

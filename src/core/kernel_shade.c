@@ -132,8 +132,10 @@ FL_INLINE wide3 reflectance(const fl_frame *frame, const fl_stage *stage, uint32
         return sum;
     fl_wf r_l = 2.0f * dot3(normal, view) * n_l - dot3(view, to_light);
     r_l = fl_wf_min(fl_wf_max(r_l, zero), fl_wf_set(1.0f));
-    fl_wf lobe = fl_wf_pow(r_l, fl_wf_load(stage->shininess + at));
-    return mad3(sum, specular, fl_wf_select(shines, lobe, zero));
+    wide3 lit = mad3(sum, specular, fl_wf_pow(r_l, fl_wf_load(stage->shininess + at)));
+    /* Not a lobe of 0: times infinity it would be NaN, or not, by what the neighbours do. */
+    return (wide3){fl_wf_select(shines, lit.x, sum.x), fl_wf_select(shines, lit.y, sum.y),
+                   fl_wf_select(shines, lit.z, sum.z)};
 }
 
 /* Lanes that carry something, packed behind those already in the stream. */

@@ -7,6 +7,8 @@
 #include "core/pipeline_work.h"
 #include "core/texture.h"
 
+enum { FETCH_AHEAD = 12 }; /* Rays between asking for a texel and using it. */
+
 void fl_counts_add(fl_counts *sum, const fl_counts *part)
 {
     sum->samples += part->samples;
@@ -101,6 +103,15 @@ static bool is_seen_from_behind(const fl_stage *stage, uint32_t i)
     return s->ngx[i] * stage->rays.dx[i] + s->ngy[i] * stage->rays.dy[i] + s->ngz[i] * stage->rays.dz[i] > 0.0f;
 }
 
+/* Texels are far apart in memory: ask for those of a later ray while this one is worked on. */
+static void fetch_texel(const fl_compiled *scene, const fl_stage *stage, uint32_t i)
+{
+    const fl_shader *shader = &scene->shaders[scene->object_shader[stage->hits.object[i]]];
+    if (shader->texture != FL_NONE)
+        fl_texture_fetch(&scene->textures[shader->texture], stage->surface.u[i],
+                         stage->surface.v[i]);
+}
+
 /* What the surfaces are made of, and the ambient light on them. True: some of them spawn rays. */
 static bool fetch_materials(fl_pipe *pipe)
 {
@@ -113,6 +124,8 @@ static bool fetch_materials(fl_pipe *pipe)
     for (uint32_t i = 0; i < stage->rays.count; i++) {
         uint32_t number = scene->object_shader[stage->hits.object[i]];
         const fl_shader *shader = &scene->shaders[number];
+        if (plan->has_textures && i + FETCH_AHEAD < stage->rays.count)
+            fetch_texel(scene, stage, i + FETCH_AHEAD);
         float diffuse[3] = {shader->diffuse[0], shader->diffuse[1], shader->diffuse[2]}, texel[3],
               glow[3];
         if (plan->has_textures && shader->texture != FL_NONE) {
@@ -203,25 +216,24 @@ static void spawn(fl_pipe *pipe, uint32_t i, const float weight[3], bool is_refr
     const fl_stage *stage = &work->stage;
     const fl_params *params = &pipe->frame->params;
     uint32_t entry = stage->entry[i];
+    fl_array3 t = work->throughput;
+    const float c[3] = {t.x[entry] * weight[0], t.y[entry] * weight[1], t.z[entry] * weight[2]};
+    float rg = c[0] > c[1] ? c[0] : c[1], largest = rg > c[2] ? rg : c[2];
+    float threshold = (float)params->weight_threshold;
+    if (is_black(c) || (threshold > 0.0f && largest < threshold))
+        return;
     fl_array3 o = is_refracted ? stage->refract_origin : stage->reflect_origin;
     fl_array3 d = is_refracted ? stage->refract : stage->reflect;
-    fl_array3 t = work->throughput;
-    fl_branch *branch = &work->next.items[work->next.count];
-    *branch = (fl_branch){
+    work->next.items[work->next.count++] = (fl_branch){
         .origin = {o.x[i], o.y[i], o.z[i]},
         .direction = {d.x[i], d.y[i], d.z[i]},
-        .throughput = {t.x[entry] * weight[0], t.y[entry] * weight[1], t.z[entry] * weight[2]},
+        .throughput = {c[0], c[1], c[2]},
         .source_object = stage->hits.object[i],
         .source_prim = stage->hits.prim[i],
         .path = fl_path_child(params->seed, stage->path[i], is_refracted ? 1 : 0),
         .slot = work->slot[entry],
         .is_refracted = is_refracted,
     };
-    const float *c = branch->throughput;
-    float rg = c[0] > c[1] ? c[0] : c[1], largest = rg > c[2] ? rg : c[2];
-    float threshold = (float)params->weight_threshold;
-    if (!is_black(c) && !(threshold > 0.0f && largest < threshold))
-        work->next.count++;
 }
 
 static void spawn_all(fl_pipe *pipe)
@@ -335,8 +347,7 @@ static bool run_level(fl_pipe *pipe, uint32_t level, bool *out_of_memory)
         (plan->has_reflection || plan->has_refraction) && level < pipe->frame->params.depth_limit;
     for (uint32_t begin = 0; begin < count; begin += FL_STREAM_RAYS) {
         uint32_t part = fl_min_u32(count - begin, FL_STREAM_RAYS);
-        /* Room for both branches of every ray, and one that is written before it is weighed. */
-        if (may_spawn && !fl_branches_reserve(&work->next, 2 * part + 1)) {
+        if (may_spawn && !fl_branches_reserve(&work->next, 2 * part)) {
             *out_of_memory = true;
             return false;
         }

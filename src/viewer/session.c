@@ -165,14 +165,22 @@ bool vw_session_refresh(vw_session *session, fl_diags *diags)
 
 float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags)
 {
-    fl_render_progress(session->render, out_progress);
-    size_t floats = (size_t)out_progress->width * out_progress->height * 3;
-    float *rgb = floats ? malloc(floats * sizeof *rgb) : NULL;
-    if (rgb && fl_render_mean(session->render, rgb, floats, out_progress))
-        return rgb;
-    free(rgb);
-    fl_out_of_memory(diags, "the snapshot");
-    return NULL;
+    float *rgb = NULL;
+    size_t floats = 0;
+    /* Asked first for its size: the picture to show may not be the one being rendered. */
+    while (!fl_render_mean(session->render, rgb, floats, out_progress)) {
+        floats = (size_t)out_progress->width * out_progress->height * 3;
+        free(rgb);
+        rgb = floats ? malloc(floats * sizeof *rgb) : NULL;
+        if (rgb)
+            continue;
+        if (floats)
+            fl_out_of_memory(diags, "the snapshot");
+        else
+            fl_environment_error(diags, "there is no picture yet");
+        return NULL;
+    }
+    return rgb;
 }
 
 static uint8_t *tonemapped(const vw_session *session, const float *rgb, size_t pixels)

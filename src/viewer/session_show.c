@@ -107,10 +107,16 @@ vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags)
         vw_state_say(&session->state, "nothing pinned");
         return VW_DIRTY_SHOW;
     }
+    if (session->revision == 0) {
+        vw_state_say(&session->state, "there is no picture yet");
+        return VW_DIRTY_WINDOW;
+    }
     fl_progress progress;
     float *rgb = vw_session_mean(session, &progress, diags);
     uint8_t *rgba = rgb ? malloc((size_t)progress.width * progress.height * 4) : NULL;
     if (!rgba) {
+        if (rgb)
+            fl_out_of_memory(diags, "the pinned picture");
         free(rgb);
         return VW_DIRTY_WINDOW;
     }

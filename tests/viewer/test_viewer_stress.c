@@ -105,17 +105,26 @@ static void random_inputs_leave_no_trace_in_the_film(void **unused)
     assert_true(vw_session_restart(&session, &diags));
     session.is_replay = true;
     uint64_t ms = 0;
+    uint32_t shown_count = 0;
     for (uint32_t i = 0; i < input_count; i++) {
         vw_event event = random_event();
         ms += draw(40);
         act(&session, vw_input_event(&session.input, &session.state, &event, ms), &diags);
-        if (vw_session_refresh(&session, &diags))
+        /* Now and then the workers get so far that there is something to see. */
+        if (draw(8) == 0)
+            fl_render_wait(session.render, 0.004);
+        if (vw_session_refresh(&session, &diags)) {
             assert_non_null(vw_session_shown(&session));
+            shown_count++;
+        }
         char notes[512];
         vw_session_notes(&session, notes, sizeof notes);
         if (diags.error_count)
             fail_msg("input %u: %s", i, diags.items[0].message);
     }
+    printf("%u pictures were shown, %llu restarts made\n", shown_count,
+           (unsigned long long)session.progress.newest_generation);
+    assert_true(shown_count > 0);
     char after[FL_SHA256_HEX + 1], want[FL_SHA256_HEX + 1];
     film_of(&session, after);
     assert_true(vw_session_open(&fresh, &options, VIEWER_TEST_SCENE, session.state.width,
