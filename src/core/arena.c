@@ -1,34 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#if defined(__linux__)
-#define _DEFAULT_SOURCE /* madvise */
-#endif
 #include "core/arena.h"
 
 #include <stdlib.h>
 #include <string.h>
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
 
-enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024, HUGE_BYTES = 2 * 1024 * 1024 };
-
-/* Memory for a block. Large ones begin on a large page where the system has those: trees of many
- * megabytes are read here and there, and with small pages half of that time goes into finding them.
- */
-static void *block_memory(size_t bytes)
-{
-#if defined(__linux__)
-    if (bytes >= 2 * (size_t)HUGE_BYTES && bytes <= SIZE_MAX - HUGE_BYTES) {
-        size_t rounded = (bytes + HUGE_BYTES - 1) / HUGE_BYTES * HUGE_BYTES;
-        void *memory = aligned_alloc(HUGE_BYTES, rounded);
-        if (memory)
-            madvise(memory, rounded,
-                    MADV_HUGEPAGE); /* Advice: it does not matter if it is not taken. */
-        return memory;
-    }
-#endif
-    return aligned_alloc(ALIGN, bytes);
-}
+enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024 };
 
 struct fl_arena_block {
     fl_arena_block *older;
@@ -47,7 +23,7 @@ static fl_arena_block *block_create(size_t bytes)
     size_t capacity = bytes < BLOCK_BYTES ? BLOCK_BYTES : bytes;
     if (capacity > SIZE_MAX - ALIGN)
         return NULL;
-    fl_arena_block *block = block_memory(capacity + ALIGN);
+    fl_arena_block *block = aligned_alloc(ALIGN, capacity + ALIGN);
     if (block)
         *block = (fl_arena_block){.capacity_bytes = capacity};
     return block;

@@ -199,28 +199,24 @@ FL_INLINE void packet_walk(packet *p, const mesh_target *target, const bool is_a
     const fl_bvh *bvh = target->mesh->bvh;
     packet_visit stack[FL_BVH_STACK_MAX];
     uint32_t height = 0;
-    uint64_t node_visits = 0, alive = p->lanes; /* Any-hit: those not yet blocked. */
+    uint64_t node_visits = 0;
     bool is_loose = false; /* Few rays of the beam passed the last exact test. */
     packet_find_beam(p);
     stack[height++] = (packet_visit){p->lanes, 0, FL_NONE, 0.0f};
     while (height > 0) {
         packet_visit v = stack[--height];
         bool is_leaf = v.child & FL_BVH_LEAF;
-        if (is_any && !(v.lanes &= alive))
-            continue;
         if (v.box != FL_NONE && (is_leaf || is_loose || !p->has_one_origin)) {
             uint32_t before = (uint32_t)__builtin_popcountll(v.lanes);
             v.lanes = groups_meet_box(p, v.lanes, bvh, v.box);
             is_loose = (uint32_t)__builtin_popcountll(v.lanes) * 4 < before;
-        } else if (!is_any) {
+        } else {
             v.lanes = groups_beyond(p, v.lanes, v.near);
         }
         if (!v.lanes)
             continue;
         if (is_leaf) {
             packet_meet_pack(p, v.lanes, target, v.child, is_any);
-            if (is_any)
-                alive &= ~v.lanes | groups_beyond(p, v.lanes, 0.0f);
             continue;
         }
         uint32_t count = (uint32_t)__builtin_popcountll(v.lanes);

@@ -7,7 +7,6 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "io/files.h"
 #include "io/image_file.h"
 
 /* Numbers of a camera as text, in the order in which they are written. */
