@@ -26,6 +26,7 @@
 #include "core/pool.h"
 #include "core/render.h"
 #include "core/scene.h"
+#include "core/scene_map.h"
 #include "core/tonemap.h"
 #include "core/trace.h"
 
