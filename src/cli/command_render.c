@@ -18,11 +18,14 @@ static void print_json(const cli_scene *scene, const cli_picture *picture)
     json_t *rmse = p->error.is_known ? json_pack("{s:f, s:f, s:f}", "estimate", p->error.rmse, "low", p->error.low,
                                                  "high", p->error.high)
                                      : json_pack("{s:n, s:n, s:n}", "estimate", "low", "high");
+    json_t *costs = json_object();
+    for (uint32_t i = 0; i < FL_COST_COUNT; i++)
+        json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
-        "{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
+        "{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
         scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)p->complete_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
-        "first_sample_seconds", p->first_sample_seconds, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
+        "first_sample_seconds", p->first_sample_seconds, "stage_seconds", costs, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
         (json_int_t)c->shadow_rays, "reflect", (json_int_t)c->reflect_rays, "refract", (json_int_t)c->refract_rays,
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
         (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "interrupted",

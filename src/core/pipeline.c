@@ -9,6 +9,16 @@
 
 enum { FETCH_AHEAD = 12 }; /* Rays between asking for a texel and using it. */
 
+const char *const fl_cost_names[FL_COST_COUNT] = {"generate", "nearest",    "resolve",
+                                                  "material", "light",      "occlude",
+                                                  "spawn",    "accumulate", "film"};
+
+static void add_isect(fl_isect_counts *sum, const fl_isect_counts *part)
+{
+    sum->node_visits += part->node_visits;
+    sum->primitive_tests += part->primitive_tests;
+}
+
 void fl_counts_add(fl_counts *sum, const fl_counts *part)
 {
     sum->samples += part->samples;
@@ -20,8 +30,8 @@ void fl_counts_add(fl_counts *sum, const fl_counts *part)
     sum->dropped_branches += part->dropped_branches;
     sum->sample_dimensions += part->sample_dimensions;
     sum->texture_lookups += part->texture_lookups;
-    sum->isect.node_visits += part->isect.node_visits;
-    sum->isect.primitive_tests += part->isect.primitive_tests;
+    add_isect(&sum->isect, &part->isect);
+    add_isect(&sum->occlude, &part->occlude);
 }
 
 static void put3(fl_array3 a, uint32_t i, const float v[3])
@@ -100,7 +110,9 @@ static float branch_index(const fl_shader *shader)
 static bool is_seen_from_behind(const fl_stage *stage, uint32_t i)
 {
     const fl_surface *s = &stage->surface;
-    return s->ngx[i] * stage->rays.dx[i] + s->ngy[i] * stage->rays.dy[i] + s->ngz[i] * stage->rays.dz[i] > 0.0f;
+    return s->ngx[i] * stage->rays.dx[i] + s->ngy[i] * stage->rays.dy[i] +
+               s->ngz[i] * stage->rays.dz[i] >
+           0.0f;
 }
 
 /* Texels are far apart in memory: ask for those of a later ray while this one is worked on. */
@@ -197,15 +209,18 @@ static bool add_lights(fl_pipe *pipe)
                 return false;
             pipe->counts.sample_dimensions += light->draws ? 2u * (uint64_t)count : 0;
             if (frame->plan.has_shadows && work->shadow.rays.count > 0) {
+                fl_pipe_lap(pipe, FL_COST_LIGHT);
                 pipe->counts.shadow_rays += work->shadow.rays.count;
                 if (!fl_pipe_occlude(pipe))
                     return false;
+                fl_pipe_lap(pipe, FL_COST_OCCLUDE);
             }
             add_arrivals(&work->shadow, sum);
         }
         if (light->samples > 1)
             add_mean(stage->radiance, work->lit, (float)light->samples, count);
     }
+    fl_pipe_lap(pipe, FL_COST_LIGHT);
     return true;
 }
 
@@ -278,24 +293,31 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
     const fl_compiled *scene = pipe->frame->scene;
     uint32_t count = stage->rays.count;
     fl_rays_pad(&stage->rays);
+    fl_pipe_lap(pipe, FL_COST_GENERATE);
     pipe->isect->nearest(&scene->geometry, &stage->rays, &stage->hits, &pipe->context);
+    fl_pipe_lap(pipe, FL_COST_NEAREST);
     if (fl_is_cancelled(&pipe->context))
         return false;
     take_misses(pipe);
+    fl_pipe_lap(pipe, FL_COST_MATERIAL);
     if (stage->rays.count > 0) {
         const uint8_t *needs_uv = pipe->frame->plan.has_textures ? scene->object_needs_uv : NULL;
         pipe->isect->resolve(&scene->geometry, &stage->rays, &stage->hits, needs_uv,
                              &stage->surface, &pipe->context);
+        fl_pipe_lap(pipe, FL_COST_RESOLVE);
         if (fl_is_cancelled(&pipe->context))
             return false;
         bool has_branches = fetch_materials(pipe);
         pipe->shade->orient(pipe->frame, stage);
+        fl_pipe_lap(pipe, FL_COST_MATERIAL);
         if (fl_is_cancelled(&pipe->context) || !add_lights(pipe))
             return false;
         if (has_branches && may_spawn)
             spawn_all(pipe);
+        fl_pipe_lap(pipe, FL_COST_SPAWN);
     }
     accumulate(pipe, count);
+    fl_pipe_lap(pipe, FL_COST_ACCUMULATE);
     return !fl_is_cancelled(&pipe->context);
 }
 
@@ -418,6 +440,7 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
         .isect = isect_kernels(frame->scene->isa),
         .shade = shade_kernels(frame->scene->isa),
         .context = {.solver = frame->params.solver, .generation = generation, .wanted = wanted},
+        .lap = fl_ticks(),
     };
     fl_unit_result *result = &workspace->result;
     *out_of_memory = frame->params.transparent_shadows && !fl_workspace_reserve_through(workspace);
@@ -433,8 +456,10 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
         workspace->current = workspace->next;
         workspace->next = swapped;
         workspace->next.count = 0;
+        fl_pipe_lap(&pipe, FL_COST_SPAWN);
     }
     check_samples(&pipe);
+    fl_pipe_lap(&pipe, FL_COST_ACCUMULATE);
     pipe.counts.isect = pipe.context.counts;
     fl_counts_add(counts, &pipe.counts);
     return true;

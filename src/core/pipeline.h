@@ -36,10 +36,33 @@ typedef struct fl_counts {
     uint64_t dropped_branches;  /**< By FL_PENDING_MAX. */
     uint64_t sample_dimensions; /**< Drawn. */
     uint64_t texture_lookups;
-    fl_isect_counts isect;
+    fl_isect_counts isect;   /**< Of all rays. */
+    fl_isect_counts occlude; /**< Of shadow rays alone. */
 } fl_counts;
 
 void fl_counts_add(fl_counts *sum, const fl_counts *part);
+
+/** Where time goes. */
+typedef enum fl_cost {
+    FL_COST_GENERATE,   /**< Camera rays, and spawned ones put into streams. */
+    FL_COST_NEAREST,    /**< What a ray meets first. */
+    FL_COST_RESOLVE,    /**< That point again, in double. */
+    FL_COST_MATERIAL,   /**< Background, textures, ambient light. */
+    FL_COST_LIGHT,      /**< Points on lights and what they send. */
+    FL_COST_OCCLUDE,    /**< Whether it arrives. */
+    FL_COST_SPAWN,      /**< Reflected and refracted rays. */
+    FL_COST_ACCUMULATE, /**< Radiance to samples. */
+    FL_COST_FILM,       /**< Samples to the film, with the lock and the choice of the next unit. */
+    FL_COST_COUNT
+} fl_cost;
+/** "generate", "nearest", ... */
+extern const char *const fl_cost_names[FL_COST_COUNT];
+
+/** Time by stage in units of fl_ticks, which are good for shares alone. Never twice the same, so
+ * kept apart from fl_counts. */
+typedef struct fl_cost_ticks {
+    uint64_t of[FL_COST_COUNT];
+} fl_cost_ticks;
 
 /** A worker's private memory: streams, queues, result. */
 typedef struct fl_workspace fl_workspace;
@@ -50,6 +73,8 @@ void fl_workspace_destroy(fl_workspace *workspace);
 /** The result arrays that fl_pipeline_run fills; owned by the workspace, valid until its next run.
  */
 const fl_unit_result *fl_workspace_result(const fl_workspace *workspace);
+/** What fl_pipeline_run has cost since its owner last wiped it, all but FL_COST_FILM. */
+fl_cost_ticks *fl_workspace_ticks(fl_workspace *workspace);
 
 /** Run one unit with the frame's instruction set; adds what it did to *counts. `generation` and
  * `wanted` as in fl_isect_context: false when the work became stale (or memory ran out, then

@@ -123,7 +123,11 @@ static bool occlude_transparent(fl_pipe *pipe)
 
 bool fl_pipe_occlude(fl_pipe *pipe)
 {
+    fl_isect_counts before = pipe->context.counts, *counts = &pipe->counts.occlude;
     fl_rays_pad(&pipe->work->shadow.rays);
-    return pipe->frame->params.transparent_shadows ? occlude_transparent(pipe)
-                                                   : occlude_opaque(pipe);
+    bool is_fine =
+        pipe->frame->params.transparent_shadows ? occlude_transparent(pipe) : occlude_opaque(pipe);
+    counts->node_visits += pipe->context.counts.node_visits - before.node_visits;
+    counts->primitive_tests += pipe->context.counts.primitive_tests - before.primitive_tests;
+    return is_fine;
 }

@@ -145,6 +145,11 @@ const fl_unit_result *fl_workspace_result(const fl_workspace *workspace)
     return &workspace->result;
 }
 
+fl_cost_ticks *fl_workspace_ticks(fl_workspace *workspace)
+{
+    return &workspace->ticks;
+}
+
 bool fl_branches_reserve(fl_branches *branches, uint32_t more)
 {
     if (more <= branches->capacity - branches->count)

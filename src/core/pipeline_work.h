@@ -9,6 +9,7 @@
 #include "core/arena.h"
 #include "core/kernel_shade.h"
 #include "core/pipeline.h"
+#include "core/ticks.h"
 
 /** A reflected or refracted ray that waits for its level. */
 typedef struct fl_branch {
@@ -48,6 +49,7 @@ struct fl_workspace {
     fl_surface through_surface;
     fl_array3 end; /**< Transparent shadows: the point on the light. */
     fl_unit_result result;
+    fl_cost_ticks ticks;
 };
 
 /** Arrays for transparent shadows, once. False: out of memory. */
@@ -62,7 +64,16 @@ typedef struct fl_pipe {
     const fl_shade_kernels *shade;
     fl_isect_context context;
     fl_counts counts; /**< Of this run. */
+    uint64_t lap;     /**< When the stage at work began. */
 } fl_pipe;
+
+/** The time since the last lap went into `cost`. */
+static inline void fl_pipe_lap(fl_pipe *pipe, fl_cost cost)
+{
+    uint64_t now = fl_ticks();
+    pipe->work->ticks.of[cost] += now - pipe->lap;
+    pipe->lap = now;
+}
 
 /** Fill what lies between count and the next multiple of 8 with rays that hit nothing. */
 void fl_rays_pad(fl_rays *rays);

@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "core/pool.h"
@@ -251,6 +252,7 @@ static void fill_progress(const fl_render *render, const fl_job *job, fl_progres
     out_progress->cpu_seconds = job->cpu_seconds;
     out_progress->first_picture_seconds = job->first_picture_seconds;
     out_progress->first_sample_seconds = job->first_sample_seconds;
+    memcpy(out_progress->cost_seconds, job->cost_seconds, sizeof job->cost_seconds);
     out_progress->counts = job->counts;
     fl_estimate_read(job->estimate, out_progress->complete_samples, &out_progress->error);
 }

@@ -63,6 +63,7 @@ typedef struct fl_progress {
                                      until then. */
     double cancel_seconds;   /**< The current generation's beginning until the last stale unit was
                                 dropped. */
+    double cost_seconds[FL_COST_COUNT]; /**< cpu_seconds by stage. */
     fl_counts counts;        /**< Of committed units: the same for any number of threads. */
     fl_error_estimate error; /**< Of the mean; between passes that of the complete samples. */
 } fl_progress;

@@ -2,6 +2,7 @@
 #include "core/render_state.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 double fl_render_now(void)
@@ -141,6 +142,7 @@ void fl_render_begin(fl_render *render, fl_job *job, fl_frame *frame)
     fl_estimate_reset(job->estimate);
     job->counts = (fl_counts){0};
     job->cpu_seconds = job->seconds_before = 0.0;
+    memset(job->cost_seconds, 0, sizeof job->cost_seconds);
     job->first_picture_seconds = job->first_sample_seconds = 0.0;
 
     render->current = job;

@@ -27,7 +27,7 @@ typedef struct fl_job {
     fl_schedule *schedule;
     fl_estimate *estimate;
     fl_counts counts;
-    double cpu_seconds;
+    double cpu_seconds, cost_seconds[FL_COST_COUNT];
     double seconds_before; /**< Rendering time up to the last stop of the clock. */
     double begun_at;       /**< When the clock was started last; only while it runs. */
     double requested_at;   /**< When fl_render_restart was called. */

@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/render_state.h"
 
+#include <string.h>
 #include <sys/resource.h>
 #include <time.h>
+
+#include "core/ticks.h"
 
 static double thread_cpu_seconds(void)
 {
@@ -17,6 +20,7 @@ typedef struct errand {
     fl_work work;
     fl_unit unit;
     fl_counts counts;
+    double cpu_seconds; /* Of the thread since its last unit. */
     bool is_complete, is_out_of_memory;
 } errand;
 
@@ -51,17 +55,33 @@ static void run(fl_worker *worker, errand *e)
     e->is_complete =
         fl_pipeline_run(worker->frame, &e->unit, worker->workspace, &worker->render->generation,
                         e->generation, &e->counts, &e->is_out_of_memory);
+    double cpu_now = thread_cpu_seconds();
+    e->cpu_seconds = cpu_now - worker->cpu_seconds_seen;
+    worker->cpu_seconds_seen = cpu_now;
+}
+
+/* CPU seconds of a unit, and of what its worker did before it since the last one, by stage: ticks
+ * give the shares alone, since a clock that goes on while others have the processor says no more.
+ */
+static void add_seconds(fl_job *job, double cpu_seconds, const fl_cost_ticks *ticks)
+{
+    uint64_t all = 0;
+    job->cpu_seconds += cpu_seconds;
+    for (int i = 0; i < FL_COST_COUNT; i++)
+        all += ticks->of[i];
+    for (int i = 0; i < FL_COST_COUNT && all > 0; i++)
+        job->cost_seconds[i] += cpu_seconds * ((double)ticks->of[i] / (double)all);
 }
 
 /* Put the samples into the film and see what that completes. */
-static void commit(fl_worker *worker, const errand *e, double cpu_seconds, fl_trash *trash)
+static void commit(fl_worker *worker, const errand *e, fl_trash *trash)
 {
     fl_render *render = worker->render;
     fl_job *job = render->current;
     fl_film_add(job->film, &e->unit, fl_workspace_result(worker->workspace), worker->frame->x0,
                 worker->frame->y0);
     fl_counts_add(&job->counts, &e->counts);
-    job->cpu_seconds += cpu_seconds;
+    add_seconds(job, e->cpu_seconds, fl_workspace_ticks(worker->workspace));
     fl_rect rect;
     if (fl_schedule_commit(job->schedule, &e->work, &rect))
         fl_estimate_capture(job->estimate, job->film, &rect, e->work.sample + 1);
@@ -82,8 +102,6 @@ static void commit(fl_worker *worker, const errand *e, double cpu_seconds, fl_tr
 static bool give_back(fl_worker *worker, const errand *e, fl_trash *trash)
 {
     fl_render *render = worker->render;
-    double cpu_now = thread_cpu_seconds(), cpu_seconds = cpu_now - worker->cpu_seconds_seen;
-    worker->cpu_seconds_seen = cpu_now;
     if (!render->current || e->generation != render->current->generation) {
         if (--render->stale_units == 0)
             render->cancel_seconds = fl_render_now() - render->begun_at;
@@ -92,7 +110,7 @@ static bool give_back(fl_worker *worker, const errand *e, fl_trash *trash)
     render->out_units--;
     uint64_t revision = render->revision;
     if (e->is_complete)
-        commit(worker, e, cpu_seconds, trash);
+        commit(worker, e, trash);
     else if (e->is_out_of_memory)
         render->has_failed = true;
     fl_render_update(render);
@@ -135,7 +153,10 @@ void *fl_worker_main(void *argument)
         fl_trash_empty(&trash);
         run(worker, &e);
         pthread_mutex_lock(&render->lock);
+        uint64_t begun = fl_ticks();
         bool should_notify = give_back(worker, &e, &trash) && !render->is_notified;
+        *fl_workspace_ticks(worker->workspace) =
+            (fl_cost_ticks){.of[FL_COST_FILM] = fl_ticks() - begun}; /* For the next unit. */
         render->is_notified |= should_notify;
         bool calls = should_notify && render->options.notify;
         if (calls || trash.frame_count > 0 || trash.job_count > 0) {

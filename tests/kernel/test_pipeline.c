@@ -137,6 +137,8 @@ static void unused_features_cost_nothing(void **state)
     assert_int_equal(first.counts.reflect_rays + first.counts.refract_rays, 0);
     assert_int_equal(first.counts.texture_lookups, 0);
     uint64_t shadow_rays = first.counts.shadow_rays;
+    assert_int_equal(first.counts.isect.primitive_tests, 256 + shadow_rays);
+    assert_int_equal(first.counts.occlude.primitive_tests, shadow_rays);
     assert_in_range(shadow_rays, 10, 100); /* lit side of the sphere alone */
 
     w.params.camera.aperture = 0.1;
@@ -149,6 +151,7 @@ static void unused_features_cost_nothing(void **state)
     w.params.exact.no_shadows = true;
     world_render(&w, fl_cpu_best_isa(), 0, &second);
     assert_int_equal(second.counts.shadow_rays, 0);
+    assert_int_equal(second.counts.occlude.primitive_tests, 0);
     w.scene.light_count = 0;
     world_render(&w, fl_cpu_best_isa(), 0, &second);
     assert_int_equal(second.counts.shadow_rays, 0);

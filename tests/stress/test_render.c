@@ -364,6 +364,12 @@ static void counts_and_times_are_those_of_the_film(void **state)
     assert_int_equal(p.complete_ranks, 64);
     assert_true(p.first_picture_seconds > 0.0 && p.first_picture_seconds <= p.first_sample_seconds);
     assert_true(p.seconds > 0.0 && p.cpu_seconds > 0.0);
+    /* The stages share exactly the time there is. */
+    double sum = 0.0;
+    for (int i = 0; i < FL_COST_COUNT; i++)
+        sum += p.cost_seconds[i];
+    assert_true(p.cost_seconds[FL_COST_NEAREST] > 0.0);
+    assert_true(fabs(sum - p.cpu_seconds) <= 1e-9 * p.cpu_seconds);
     fl_progress later;
     fl_render_progress(render, &later);
     assert_true(later.seconds == p.seconds); /* The clock stands. */

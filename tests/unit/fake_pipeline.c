@@ -11,6 +11,7 @@ struct fl_workspace {
     fl_unit_result result;
     float rgb[3][FL_UNIT_PIXELS];
     uint8_t is_valid[FL_UNIT_PIXELS];
+    fl_cost_ticks ticks;
 };
 
 static pthread_mutex_t gate_lock = PTHREAD_MUTEX_INITIALIZER;
@@ -123,6 +124,12 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
     }
     counts->samples += unit->count;
     return true;
+}
+
+fl_cost_ticks *fl_workspace_ticks(fl_workspace *workspace)
+{
+    workspace->ticks.of[FL_COST_NEAREST]++;
+    return &workspace->ticks;
 }
 
 void fl_counts_add(fl_counts *sum, const fl_counts *part)
