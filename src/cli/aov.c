@@ -25,7 +25,7 @@ static bool refuse(const char *word, size_t bytes, fl_diags *diags)
     memcpy(names + FL_AOV_COUNT, map_names, sizeof map_names);
     const char *nearest = fl_nearest_name(word, bytes, names, FL_COUNT_OF(names));
     return fl_error(diags, (fl_loc){0}, "--aov does not know '%.*s'%s%s%s", (int)bytes, word,
-                    nearest ? "; did you mean '" : "; expected depth, normal, albedo, samples, error, cost, object, shape",
+                    nearest ? "; did you mean '" : "; expected depth, normal, albedo, samples, error, cost, object, shape, branch",
                     nearest ? nearest : "", nearest ? "'?" : "");
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <jansson.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 #include "cli/commands.h"
 
@@ -18,7 +19,43 @@ static json_t *diagnostics_json(const fl_diags *diags)
     return list;
 }
 
-static void print_json(const cli_scene *scene)
+/* The tree of rays of the sample that --pixel names, from malloc, and its value; NULL after adding an error. */
+static char *tree_text(const cli_options *options, const cli_scene *scene, float out_rgb[3])
+{
+    fl_raytree tree = {0};
+    fl_frame *frame = fl_frame_create(scene->compiled, &scene->params, scene->diags);
+    if (!frame)
+        return NULL;
+    char *text = NULL;
+    if (fl_raytree_trace(frame, options->pixel[0], options->pixel[1], options->pixel[2], &tree) &&
+        fl_raytree_find_blockers(frame, &tree)) {
+        size_t bytes = fl_raytree_text(frame, &tree, false, NULL, 0) + 1;
+        text = malloc(bytes);
+        if (text)
+            fl_raytree_text(frame, &tree, false, text, bytes);
+    }
+    if (!text)
+        fl_out_of_memory(scene->diags, "the tree of rays");
+    for (int c = 0; c < 3; c++)
+        out_rgb[c] = tree.rgb[c];
+    fl_raytree_deinit(&tree);
+    fl_frame_release(frame);
+    return text;
+}
+
+static json_t *tree_json(const cli_options *options, const cli_scene *scene)
+{
+    float rgb[3];
+    char *text = tree_text(options, scene, rgb);
+    json_t *tree = text ? json_pack("{s:[I, I], s:I, s:[f, f, f], s:s}", "pixel", (json_int_t)options->pixel[0],
+                                    (json_int_t)options->pixel[1], "sample", (json_int_t)options->pixel[2], "rgb",
+                                    (double)rgb[0], (double)rgb[1], (double)rgb[2], "tree", text)
+                        : NULL;
+    free(text);
+    return tree;
+}
+
+static void print_json(const cli_options *options, const cli_scene *scene, bool is_open)
 {
     json_t *line = json_pack("{s:s, s:o}", "scene", scene->path, "diagnostics", diagnostics_json(scene->diags));
     const fl_compiled *c = scene->compiled;
@@ -40,6 +77,8 @@ static void print_json(const cli_scene *scene)
         json_object_update(line, more);
         json_decref(more);
     }
+    if (is_open && cli_has(options, CLI_OPT_PIXEL))
+        json_object_set_new(line, "sample", tree_json(options, scene));
     json_dumpf(line, stdout, JSON_COMPACT);
     putchar('\n');
     json_decref(line);
@@ -76,9 +115,23 @@ int cli_command_info(const cli_options *options)
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};
     bool ok = cli_scene_open(options, options->paths[0], &scene);
+    if (ok && cli_has(options, CLI_OPT_PIXEL) &&
+        (options->pixel[0] >= scene.params.width || options->pixel[1] >= scene.params.height)) {
+        int code = cli_usage_error(CLI_INFO, "pixel %u,%u lies outside the picture of %ux%u", options->pixel[0],
+                                   options->pixel[1], scene.params.width, scene.params.height);
+        cli_scene_close(&scene);
+        fl_diags_deinit(&diags);
+        return code;
+    }
     if (cli_has(options, CLI_OPT_JSON)) {
         scene.path = options->paths[0];
-        print_json(&scene);
+        print_json(options, &scene, ok);
+    } else if (ok && cli_has(options, CLI_OPT_PIXEL)) {
+        float rgb[3];
+        char *text = tree_text(options, &scene, rgb);
+        if (text)
+            fputs(text, stdout);
+        free(text);
     } else if (ok) {
         print_text(&scene);
     }

@@ -17,12 +17,13 @@ static const char *const platform_names[] = {"glfw", "osmesa", "egl", NULL};
 
 #define BIT(command) (1u << (command))
 #define RENDERING (BIT(CLI_VIEW) | BIT(CLI_RENDER) | BIT(CLI_STUDY))
+#define LOOKING (RENDERING | BIT(CLI_INFO))
 #define PICTURE (RENDERING | BIT(CLI_CHECK) | BIT(CLI_REPLAY))
 #define LOADING (PICTURE | BIT(CLI_INFO) | BIT(CLI_BENCH))
 #define AT(field) offsetof(cli_options, field)
 
 const cli_option cli_option_table[CLI_OPT_COUNT] = {
-    [CLI_OPT_SIZE] = {"size", 's', "WxH", CLI_KIND_SIZE, AT(size), 1, FL_SIDE_MAX, NULL, RENDERING | BIT(CLI_BENCH),
+    [CLI_OPT_SIZE] = {"size", 's', "WxH", CLI_KIND_SIZE, AT(size), 1, FL_SIDE_MAX, NULL, LOOKING | BIT(CLI_BENCH),
                       "picture size in pixels (default: the scene's, else 640x640)"},
     [CLI_OPT_SAMPLES] = {"samples", 'n', "N", CLI_KIND_COUNT, AT(samples), 1, 1e9, NULL, RENDERING,
                          "samples per pixel (default 64; the window stops at 4096; study: the longest curve)"},
@@ -31,27 +32,27 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
     [CLI_OPT_NOISE] = {"noise", 0, "RMSE", CLI_KIND_NUMBER, AT(noise), 1e-9, 1e3, NULL, RENDERING,
                        "stop when the predicted error is below this"},
     [CLI_OPT_LIGHT_SAMPLES] = {"light-samples", 0, "N", CLI_KIND_COUNT, AT(light_samples), 1,
-                               FL_LIGHT_SAMPLES_MAX, NULL, RENDERING, "shadow rays per disk light and hit"},
-    [CLI_OPT_DEPTH] = {"depth", 'd', "N", CLI_KIND_COUNT, AT(depth), 0, FL_DEPTH_MAX, NULL, RENDERING,
+                               FL_LIGHT_SAMPLES_MAX, NULL, LOOKING, "shadow rays per disk light and hit"},
+    [CLI_OPT_DEPTH] = {"depth", 'd', "N", CLI_KIND_COUNT, AT(depth), 0, FL_DEPTH_MAX, NULL, LOOKING,
                        "bounces of reflected and refracted rays"},
-    [CLI_OPT_APERTURE] = {"aperture", 'a', "R", CLI_KIND_NUMBER, AT(aperture), 0, 1e30, NULL, RENDERING,
+    [CLI_OPT_APERTURE] = {"aperture", 'a', "R", CLI_KIND_NUMBER, AT(aperture), 0, 1e30, NULL, LOOKING,
                           "lens radius in scene units; 0 is a pinhole"},
-    [CLI_OPT_FOCUS] = {"focus", 'f', "D", CLI_KIND_NUMBER_OR_INF, AT(focus), 1e-300, 1e300, NULL, RENDERING,
+    [CLI_OPT_FOCUS] = {"focus", 'f', "D", CLI_KIND_NUMBER_OR_INF, AT(focus), 1e-300, 1e300, NULL, LOOKING,
                        "distance of the sharp plane along the view, or inf"},
     [CLI_OPT_CAMERA] = {"camera", 'c', "'EX EY EZ  LX LY LZ  UX UY UZ  FOV'", CLI_KIND_CAMERA, AT(camera), 0, 0,
-                        NULL, RENDERING, "eye, look-at point, up, vertical field of view in degrees"},
+                        NULL, LOOKING, "eye, look-at point, up, vertical field of view in degrees"},
     [CLI_OPT_CROP] = {"crop", 0, "X,Y,W,H", CLI_KIND_CROP, AT(crop), 0, FL_SIDE_MAX, NULL, BIT(CLI_RENDER),
                       "render this part only; same bytes as in the whole"},
     [CLI_OPT_EXPOSURE] = {"exposure", 'e', "EV", CLI_KIND_NUMBER, AT(exposure_ev), -64, 64, NULL, RENDERING,
                           "brighten 8-bit output by this many stops"},
     [CLI_OPT_WEIGHT_THRESHOLD] = {"weight-threshold", 0, "W", CLI_KIND_NUMBER, AT(weight_threshold), 0, 1, NULL,
-                                  RENDERING, "end branches that weigh less (default 1/1024, 0: never)"},
-    [CLI_OPT_SEED] = {"seed", 0, "N", CLI_KIND_COUNT, AT(seed), 0, 4294967295.0, NULL, RENDERING,
+                                  LOOKING, "end branches that weigh less (default 1/1024, 0: never)"},
+    [CLI_OPT_SEED] = {"seed", 0, "N", CLI_KIND_COUNT, AT(seed), 0, 4294967295.0, NULL, LOOKING,
                       "another set of samples"},
-    [CLI_OPT_SAMPLER] = {"sampler", 0, NULL, CLI_KIND_CHOICE, AT(sampler), 0, 0, sampler_names, PICTURE,
+    [CLI_OPT_SAMPLER] = {"sampler", 0, NULL, CLI_KIND_CHOICE, AT(sampler), 0, 0, sampler_names, PICTURE | BIT(CLI_INFO),
                          "where samples lie (default sobol)"},
     [CLI_OPT_REVOLVE_SOLVER] = {"revolve-solver", 0, NULL, CLI_KIND_CHOICE, AT(solver), 0, 0, solver_names,
-                                PICTURE, "surfaces of revolution (default robust)"},
+                                PICTURE | BIT(CLI_INFO), "surfaces of revolution (default robust)"},
     [CLI_OPT_ACCEL] = {"accel", 0, NULL, CLI_KIND_CHOICE, AT(accel), 0, 0, accel_names, LOADING,
                        "how triangles are found (default bvh); all give the same picture"},
     [CLI_OPT_OCTREE_HEIGHT] = {"octree-height", 0, "N", CLI_KIND_COUNT, AT(octree_height), 1, 8, NULL, LOADING,
@@ -86,6 +87,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                          "trace the same rays with another tracer: embree, where its module was built"},
     [CLI_OPT_RECORD] = {"record", 0, "LOG", CLI_KIND_TEXT, AT(record), 0, 0, NULL, BIT(CLI_VIEW),
                         "write all input to a log that replay understands"},
+    [CLI_OPT_PIXEL] = {"pixel", 0, "X,Y[,SAMPLE]", CLI_KIND_PIXEL, AT(pixel), 0, 4294967295.0, NULL, BIT(CLI_INFO),
+                       "print the tree of rays of one sample (default 0) of the pixel, 0,0 at the top left"},
     [CLI_OPT_PLATFORM] = {"platform", 0, NULL, CLI_KIND_CHOICE_TEXT, AT(platform), 0, 0, platform_names,
                           BIT(CLI_VIEW) | BIT(CLI_REPLAY), "window or offscreen context"},
     [CLI_OPT_SHADER_DIR] = {"shader-dir", 0, "DIR", CLI_KIND_TEXT, AT(shader_dir), 0, 0, NULL,
@@ -173,6 +176,8 @@ static bool store(const cli_option *row, const char *text, cli_options *out)
         return list_of_counts(row, text, 'x', 2, field);
     case CLI_KIND_CROP:
         return list_of_counts(row, text, ',', 4, field) && out->crop[2] && out->crop[3];
+    case CLI_KIND_PIXEL:
+        return list_of_counts(row, text, ',', 3, field) || list_of_counts(row, text, ',', 2, field);
     case CLI_KIND_CAMERA:
         return number_list(text, ' ', 10, field);
     case CLI_KIND_CHOICE:

@@ -53,6 +53,7 @@ typedef enum cli_option_id {
     CLI_OPT_SWEEP,
     CLI_OPT_AGAINST,
     CLI_OPT_RECORD,
+    CLI_OPT_PIXEL,
     CLI_OPT_PLATFORM,
     CLI_OPT_SHADER_DIR,
     CLI_OPT_JSON,
@@ -77,7 +78,7 @@ typedef enum cli_command_id {
 /** What the user asked for. Strings are borrowed from argv. A value counts only when its bit is given. */
 typedef struct cli_options {
     uint64_t given; /**< Bit per cli_option_id. */
-    uint32_t size[2], crop[4];
+    uint32_t size[2], crop[4], pixel[3];
     uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats;
     double time_s, budget_s, noise, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */

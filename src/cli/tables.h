@@ -14,6 +14,7 @@ typedef enum cli_kind {
     CLI_KIND_NUMBER_OR_INF,
     CLI_KIND_SIZE,
     CLI_KIND_CROP,
+    CLI_KIND_PIXEL, /**< x and y, and a sample unless that is left out */
     CLI_KIND_CAMERA,
     CLI_KIND_CHOICE,      /**< uint32_t: index into choices */
     CLI_KIND_CHOICE_TEXT, /**< the word itself, one of choices */

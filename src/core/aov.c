@@ -3,14 +3,14 @@
 
 #include <math.h>
 
-#include "core/pipeline.h"
+#include "core/raytree.h"
 #include "core/texture.h"
 #include "core/trace_piece.h"
 
 enum { PIECE_RAYS = 1024 };
 
-const char *const fl_aov_names[FL_AOV_COUNT] = {"depth",  "normal", "albedo",
-                                                "object", "shape",  "cost"};
+const char *const fl_aov_names[FL_AOV_COUNT] = {"depth", "normal", "albedo", "object",
+                                                "shape", "cost",   "branch"};
 
 /* Absolute coordinates of the pixel that value i of the grid stands for. */
 static void pixel_of(const fl_frame *frame, const fl_aov_grid *grid, size_t i, uint32_t *out_x,
@@ -77,6 +77,7 @@ static void write_value(const fl_frame *frame, fl_aov kind, const fl_piece *p, u
             out[c] = (0.1f + 0.9f * facing) * (0.15f + 0.85f * out[c]);
         break;
     case FL_AOV_COST:
+    case FL_AOV_BRANCH:
     case FL_AOV_COUNT:
         break;
     }
@@ -141,10 +142,35 @@ static bool eval_cost(const fl_frame *frame, const fl_aov_grid *grid, float *out
     return is_fine;
 }
 
+/* Likewise, watched. */
+static bool eval_branch(const fl_frame *frame, const fl_aov_grid *grid, float *out_values)
+{
+    fl_raytree tree = {0};
+    size_t count = (size_t)grid->width * grid->height;
+    bool is_fine = true;
+    for (size_t i = 0; i < count && is_fine; i++) {
+        uint32_t x, y;
+        pixel_of(frame, grid, i, &x, &y);
+        is_fine = fl_raytree_trace(frame, x, y, 0, &tree);
+        if (!is_fine)
+            break;
+        uint32_t heaviest = fl_raytree_heaviest(&tree);
+        float *out = out_values + 3 * i;
+        out[0] = heaviest == FL_NONE ? 0.0f : (float)tree.nodes[heaviest].kind + 1.0f;
+        out[1] = heaviest == FL_NONE ? 0.0f : (float)tree.nodes[heaviest].level;
+        out[2] = (float)tree.nodes[tree.node_count - 1].level;
+    }
+    fl_raytree_deinit(&tree);
+    return is_fine;
+}
+
 bool fl_aov_eval(const fl_frame *frame, fl_aov kind, const double lens[2], const fl_aov_grid *grid,
                  float *out_values)
 {
     FL_ASSERT(grid->step > 0 && kind < FL_AOV_COUNT);
-    return kind == FL_AOV_COST ? eval_cost(frame, grid, out_values)
-                               : eval_hits(frame, kind, lens, grid, out_values);
+    if (kind == FL_AOV_COST)
+        return eval_cost(frame, grid, out_values);
+    if (kind == FL_AOV_BRANCH)
+        return eval_branch(frame, grid, out_values);
+    return eval_hits(frame, kind, lens, grid, out_values);
 }

@@ -19,10 +19,12 @@ typedef enum fl_aov {
     FL_AOV_SHAPE,  /**< Albedo lit from the eye: enough to recognise things. Linear. */
     FL_AOV_COST,   /**< Of sample 0 with the real lens and lights: rays, nodes visited, primitives
                         tested. Slower by what a sample costs. */
+    FL_AOV_BRANCH, /**< Of sample 0 likewise: kind of the ray that adds most to it, fl_ray_kind + 1,
+                      0: all is black; its level; the greatest level reached. */
     FL_AOV_COUNT
 } fl_aov;
 
-/** Short names: "depth", "normal", "albedo", "object", "shape", "cost". */
+/** Short names: "depth", "normal", "albedo", "object", "shape", "cost", "branch". */
 extern const char *const fl_aov_names[FL_AOV_COUNT];
 
 /** Every step-th pixel from (x0, y0) on, counted in the rendered part; the pixel in the middle of

@@ -24,6 +24,7 @@
 #include "core/params.h"
 #include "core/parse.h"
 #include "core/pool.h"
+#include "core/raytree.h"
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/scene_map.h"

@@ -172,6 +172,13 @@ static bool fetch_materials(fl_pipe *pipe)
     return has_branches;
 }
 
+static void tell(const fl_pipe *pipe, fl_moment moment, uint32_t light, uint32_t j)
+{
+    const fl_witness *witness = pipe->work->witness;
+    if (witness)
+        witness->see(witness->context, pipe, moment, light, j);
+}
+
 static void add_arrivals(const fl_shadow *shadow, fl_array3 sum)
 {
     for (uint32_t i = 0; i < shadow->rays.count; i++) {
@@ -208,6 +215,7 @@ static bool add_lights(fl_pipe *pipe)
             if (fl_is_cancelled(&pipe->context))
                 return false;
             pipe->counts.sample_dimensions += light->draws ? 2u * (uint64_t)count : 0;
+            tell(pipe, FL_AT_LIGHT, l, j);
             if (frame->plan.has_shadows && work->shadow.rays.count > 0) {
                 fl_pipe_lap(pipe, FL_COST_LIGHT);
                 pipe->counts.shadow_rays += work->shadow.rays.count;
@@ -215,6 +223,7 @@ static bool add_lights(fl_pipe *pipe)
                     return false;
                 fl_pipe_lap(pipe, FL_COST_OCCLUDE);
             }
+            tell(pipe, FL_AT_SHADOW, l, j);
             add_arrivals(&work->shadow, sum);
         }
         if (light->samples > 1)
@@ -277,6 +286,7 @@ static void accumulate(fl_pipe *pipe, uint32_t count)
         const float rgb[3] = {stage->radiance.x[i], stage->radiance.y[i], stage->radiance.z[i]};
         put3(work->glow, stage->entry[i], rgb);
     }
+    tell(pipe, FL_AT_RADIANCE, 0, 0);
     for (uint32_t i = 0; i < count; i++) {
         uint32_t slot = work->slot[i];
         result->r[slot] += work->throughput.x[i] * work->glow.x[i];
@@ -298,6 +308,7 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
     fl_pipe_lap(pipe, FL_COST_NEAREST);
     if (fl_is_cancelled(&pipe->context))
         return false;
+    tell(pipe, FL_AT_HITS, 0, 0);
     take_misses(pipe);
     fl_pipe_lap(pipe, FL_COST_MATERIAL);
     if (stage->rays.count > 0) {
@@ -310,6 +321,7 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
         bool has_branches = fetch_materials(pipe);
         pipe->shade->orient(pipe->frame, stage);
         fl_pipe_lap(pipe, FL_COST_MATERIAL);
+        tell(pipe, FL_AT_SURFACES, 0, 0);
         if (fl_is_cancelled(&pipe->context) || !add_lights(pipe))
             return false;
         if (has_branches && may_spawn)

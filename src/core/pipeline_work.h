@@ -34,8 +34,27 @@ bool fl_branches_reserve(fl_branches *branches, uint32_t more);
  * branches a slot, else quadratic in those. */
 uint32_t fl_branches_settle(fl_branches *branches);
 
+struct fl_pipe;
+
+/** When a witness is called. */
+typedef enum fl_moment {
+    FL_AT_HITS,     /**< Nearest hits are known, misses still in the stream. */
+    FL_AT_SURFACES, /**< Surfaces and the ambient light on them are known. */
+    FL_AT_LIGHT,    /**< Sample `j` of `light` is drawn, its shadow rays not traced. */
+    FL_AT_SHADOW,   /**< They are. */
+    FL_AT_RADIANCE  /**< `glow` is complete. */
+} fl_moment;
+
+/** Looks on while a unit runs, once a stream and moment; changes nothing. */
+typedef struct fl_witness {
+    void (*see)(void *context, const struct fl_pipe *pipe, fl_moment moment, uint32_t light,
+                uint32_t j);
+    void *context;
+} fl_witness;
+
 struct fl_workspace {
-    fl_arena arena; /**< All fixed arrays. */
+    fl_arena arena;            /**< All fixed arrays. */
+    const fl_witness *witness; /**< NULL: nobody looks, at no cost. */
     fl_stage stage;
     fl_shadow shadow;
     uint32_t *blocked; /**< By index into the shadow stream. */
