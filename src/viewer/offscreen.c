@@ -1,16 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 #include "viewer/offscreen.h"
 
+#include <dlfcn.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
-bool vw_offscreen_init(vw_offscreen *offscreen, const vw_platform_ops *ops,
-                       const vw_window_desc *desc)
+bool vw_offscreen_find(void *library, const char *name, void *out_function, size_t bytes)
 {
-    offscreen->base.ops = ops;
-    offscreen->width = desc->width;
-    offscreen->height = desc->height;
+    void *symbol = dlsym(library, name);
+    memcpy(out_function, &symbol, bytes);
+    return symbol != NULL;
+}
+
+static bool init_waiting(vw_offscreen *offscreen)
+{
     pthread_condattr_t attributes;
     if (pthread_mutex_init(&offscreen->mutex, NULL) != 0)
         return false;
@@ -25,15 +29,18 @@ bool vw_offscreen_init(vw_offscreen *offscreen, const vw_platform_ops *ops,
     return is_ready;
 }
 
-void vw_offscreen_deinit(vw_offscreen *offscreen)
+static void destroy(vw_platform *platform)
 {
+    vw_offscreen *offscreen = (vw_offscreen *)platform;
+    offscreen->kind->close(platform);
     pthread_cond_destroy(&offscreen->woken);
     pthread_mutex_destroy(&offscreen->mutex);
     vw_event_queue_deinit(&offscreen->base.events);
     free(offscreen->clipboard);
+    free(offscreen);
 }
 
-void vw_offscreen_pump(vw_platform *platform, double timeout_s)
+static void pump(vw_platform *platform, double timeout_s)
 {
     vw_offscreen *offscreen = (vw_offscreen *)platform;
     if (platform->events.count > 0)
@@ -59,7 +66,7 @@ void vw_offscreen_pump(vw_platform *platform, double timeout_s)
     pthread_mutex_unlock(&offscreen->mutex);
 }
 
-void vw_offscreen_wake(vw_platform *platform)
+static void wake(vw_platform *platform)
 {
     vw_offscreen *offscreen = (vw_offscreen *)platform;
     pthread_mutex_lock(&offscreen->mutex);
@@ -68,24 +75,24 @@ void vw_offscreen_wake(vw_platform *platform)
     pthread_mutex_unlock(&offscreen->mutex);
 }
 
-void vw_offscreen_framebuffer_size(vw_platform *platform, uint32_t *out_width, uint32_t *out_height)
+static void framebuffer_size(vw_platform *platform, uint32_t *out_width, uint32_t *out_height)
 {
     *out_width = ((vw_offscreen *)platform)->width;
     *out_height = ((vw_offscreen *)platform)->height;
 }
 
-double vw_offscreen_content_scale(vw_platform *platform)
+static double content_scale(vw_platform *platform)
 {
     (void)platform;
     return 1.0;
 }
 
-const char *vw_offscreen_clipboard(vw_platform *platform)
+static const char *clipboard(vw_platform *platform)
 {
     return ((vw_offscreen *)platform)->clipboard;
 }
 
-void vw_offscreen_set_clipboard(vw_platform *platform, const char *text)
+static void set_clipboard(vw_platform *platform, const char *text)
 {
     vw_offscreen *offscreen = (vw_offscreen *)platform;
     size_t bytes = strlen(text) + 1;
@@ -97,15 +104,61 @@ void vw_offscreen_set_clipboard(vw_platform *platform, const char *text)
     offscreen->clipboard = copy;
 }
 
-void vw_offscreen_set_title(vw_platform *platform, const char *title)
+static void set_title(vw_platform *platform, const char *title)
 {
     (void)platform;
     (void)title;
 }
 
-const char *vw_offscreen_key_label(vw_platform *platform, int key)
+static const char *key_label(vw_platform *platform, int key)
 {
     (void)platform;
     (void)key;
+    return NULL;
+}
+
+static void swap(vw_platform *platform)
+{
+    (void)platform;
+}
+
+static bool resize(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags)
+{
+    vw_offscreen *offscreen = (vw_offscreen *)platform;
+    if (!offscreen->kind->set_size(platform, width, height, diags))
+        return false;
+    offscreen->width = width;
+    offscreen->height = height;
+    return true;
+}
+
+vw_platform *vw_offscreen_create(const vw_offscreen_kind *kind, const vw_window_desc *desc,
+                                 fl_diags *diags)
+{
+    vw_offscreen *offscreen = calloc(1, kind->bytes);
+    if (!offscreen || !init_waiting(offscreen)) {
+        free(offscreen);
+        fl_out_of_memory(diags, "the offscreen window");
+        return NULL;
+    }
+    offscreen->kind = kind;
+    offscreen->ops = (vw_platform_ops){.name = kind->ops.name,
+                                       .destroy = destroy,
+                                       .pump = pump,
+                                       .wake = wake,
+                                       .swap = swap,
+                                       .framebuffer_size = framebuffer_size,
+                                       .content_scale = content_scale,
+                                       .get_proc = kind->ops.get_proc,
+                                       .clipboard = clipboard,
+                                       .set_clipboard = set_clipboard,
+                                       .set_title = set_title,
+                                       .key_label = key_label,
+                                       .resize = resize};
+    offscreen->base.ops = &offscreen->ops;
+    if (kind->open(&offscreen->base, diags) &&
+        resize(&offscreen->base, desc->width, desc->height, diags))
+        return &offscreen->base;
+    destroy(&offscreen->base);
     return NULL;
 }

@@ -4,8 +4,6 @@
  */
 #include <EGL/egl.h>
 #include <dlfcn.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "viewer/offscreen.h"
 
@@ -34,14 +32,8 @@ typedef struct platform_egl {
                                EGLContext context);
 } platform_egl;
 
-static bool find(void *library, const char *name, void *out_function, size_t bytes)
-{
-    void *symbol = dlsym(library, name);
-    memcpy(out_function, &symbol, bytes);
-    return symbol != NULL;
-}
-
-#define FIND(member, name) find(self->library, name, &self->member, sizeof self->member)
+#define FIND(member, name)                                                                         \
+    vw_offscreen_find(self->library, name, &self->member, sizeof self->member)
 
 static bool open_library(platform_egl *self)
 {
@@ -55,8 +47,9 @@ static bool open_library(platform_egl *self)
            FIND(destroy_surface, "eglDestroySurface") && FIND(make_current, "eglMakeCurrent");
 }
 
-static bool open_context(platform_egl *self, fl_diags *diags)
+static bool open_context(vw_platform *platform, fl_diags *diags)
 {
+    platform_egl *self = (platform_egl *)platform;
     static const EGLint config[] = {EGL_SURFACE_TYPE,
                                     EGL_PBUFFER_BIT,
                                     EGL_RENDERABLE_TYPE,
@@ -78,6 +71,9 @@ static bool open_context(platform_egl *self, fl_diags *diags)
                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
                                      EGL_NONE};
     EGLint count = 0;
+    if (!open_library(self))
+        return fl_environment_error(
+            diags, "there is no OpenGL without a display here: install libosmesa6 or libegl1");
     self->display = self->get_platform_display(PLATFORM_SURFACELESS, EGL_DEFAULT_DISPLAY, NULL);
     if (self->display == EGL_NO_DISPLAY || !self->initialize(self->display, NULL, NULL)) {
         self->display = EGL_NO_DISPLAY;
@@ -92,8 +88,9 @@ static bool open_context(platform_egl *self, fl_diags *diags)
     return true;
 }
 
-static bool set_size(platform_egl *self, uint32_t width, uint32_t height, fl_diags *diags)
+static bool set_size(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags)
 {
+    platform_egl *self = (platform_egl *)platform;
     const EGLint size[] = {EGL_WIDTH, (EGLint)width, EGL_HEIGHT, (EGLint)height, EGL_NONE};
     EGLSurface surface = self->create_pbuffer(self->display, self->config, size);
     if (surface == EGL_NO_SURFACE ||
@@ -105,34 +102,20 @@ static bool set_size(platform_egl *self, uint32_t width, uint32_t height, fl_dia
     if (self->surface != EGL_NO_SURFACE)
         self->destroy_surface(self->display, self->surface);
     self->surface = surface;
-    self->offscreen.width = width;
-    self->offscreen.height = height;
     return true;
 }
 
-static bool resize(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags)
-{
-    return set_size((platform_egl *)platform, width, height, diags);
-}
-
-static void destroy(vw_platform *platform)
+static void close_context(vw_platform *platform)
 {
     platform_egl *self = (platform_egl *)platform;
-    if (self->display != EGL_NO_DISPLAY) {
-        self->make_current(self->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-        if (self->surface != EGL_NO_SURFACE)
-            self->destroy_surface(self->display, self->surface);
-        if (self->context != EGL_NO_CONTEXT)
-            self->destroy_context(self->display, self->context);
-        self->terminate(self->display);
-    }
-    vw_offscreen_deinit(&self->offscreen);
-    free(self);
-}
-
-static void swap(vw_platform *platform)
-{
-    (void)platform;
+    if (self->display == EGL_NO_DISPLAY)
+        return;
+    self->make_current(self->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (self->surface != EGL_NO_SURFACE)
+        self->destroy_surface(self->display, self->surface);
+    if (self->context != EGL_NO_CONTEXT)
+        self->destroy_context(self->display, self->context);
+    self->terminate(self->display);
 }
 
 static vw_gl_proc get_proc(void *platform, const char *name)
@@ -140,38 +123,12 @@ static vw_gl_proc get_proc(void *platform, const char *name)
     return ((platform_egl *)platform)->get_proc(name);
 }
 
-static const vw_platform_ops ops = {
-    .name = "egl",
-    .destroy = destroy,
-    .pump = vw_offscreen_pump,
-    .wake = vw_offscreen_wake,
-    .swap = swap,
-    .framebuffer_size = vw_offscreen_framebuffer_size,
-    .content_scale = vw_offscreen_content_scale,
-    .get_proc = get_proc,
-    .clipboard = vw_offscreen_clipboard,
-    .set_clipboard = vw_offscreen_set_clipboard,
-    .set_title = vw_offscreen_set_title,
-    .key_label = vw_offscreen_key_label,
-    .resize = resize,
-};
-
 vw_platform *vw_platform_egl_create(const vw_window_desc *desc, fl_diags *diags)
 {
-    platform_egl *self = calloc(1, sizeof *self);
-    if (!self || !vw_offscreen_init(&self->offscreen, &ops, desc)) {
-        free(self);
-        fl_out_of_memory(diags, "the offscreen window");
-        return NULL;
-    }
-    bool is_open = open_library(self);
-    if (!is_open)
-        fl_environment_error(
-            diags, "there is no OpenGL without a display here: install libosmesa6 or libegl1");
-    if (!is_open || !open_context(self, diags) ||
-        !set_size(self, desc->width, desc->height, diags)) {
-        destroy(&self->offscreen.base);
-        return NULL;
-    }
-    return &self->offscreen.base;
+    static const vw_offscreen_kind kind = {.bytes = sizeof(platform_egl),
+                                           .ops = {.name = "egl", .get_proc = get_proc},
+                                           .open = open_context,
+                                           .set_size = set_size,
+                                           .close = close_context};
+    return vw_offscreen_create(&kind, desc, diags);
 }

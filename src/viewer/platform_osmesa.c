@@ -5,7 +5,6 @@
  */
 #include <dlfcn.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "viewer/offscreen.h"
 
@@ -32,28 +31,46 @@ typedef struct platform_osmesa {
     vw_gl_proc (*get_proc)(const char *name);
 } platform_osmesa;
 
-static bool find(void *library, const char *name, void *out_function, size_t bytes)
-{
-    void *symbol = dlsym(library, name);
-    memcpy(out_function, &symbol, bytes);
-    return symbol != NULL;
-}
-
 static bool open_library(platform_osmesa *self)
 {
     static const char *const names[] = {"libOSMesa.so.8", "libOSMesa.so.6", "libOSMesa.so"};
     for (size_t i = 0; i < FL_COUNT_OF(names) && !self->library; i++)
         self->library = dlopen(names[i], RTLD_NOW | RTLD_LOCAL);
     return self->library &&
-           find(self->library, "OSMesaCreateContextAttribs", &self->create, sizeof self->create) &&
-           find(self->library, "OSMesaDestroyContext", &self->destroy, sizeof self->destroy) &&
-           find(self->library, "OSMesaMakeCurrent", &self->make_current,
-                sizeof self->make_current) &&
-           find(self->library, "OSMesaGetProcAddress", &self->get_proc, sizeof self->get_proc);
+           vw_offscreen_find(self->library, "OSMesaCreateContextAttribs", &self->create,
+                             sizeof self->create) &&
+           vw_offscreen_find(self->library, "OSMesaDestroyContext", &self->destroy,
+                             sizeof self->destroy) &&
+           vw_offscreen_find(self->library, "OSMesaMakeCurrent", &self->make_current,
+                             sizeof self->make_current) &&
+           vw_offscreen_find(self->library, "OSMesaGetProcAddress", &self->get_proc,
+                             sizeof self->get_proc);
 }
 
-static bool set_size(platform_osmesa *self, uint32_t width, uint32_t height, fl_diags *diags)
+static bool open_context(vw_platform *platform, fl_diags *diags)
 {
+    static const int attributes[] = {OSMESA_FORMAT,
+                                     GL_RGBA,
+                                     OSMESA_DEPTH_BITS,
+                                     0,
+                                     OSMESA_PROFILE,
+                                     OSMESA_CORE_PROFILE,
+                                     OSMESA_CONTEXT_MAJOR_VERSION,
+                                     3,
+                                     OSMESA_CONTEXT_MINOR_VERSION,
+                                     3,
+                                     0};
+    platform_osmesa *self = (platform_osmesa *)platform;
+    if (!open_library(self))
+        return fl_environment_error(
+            diags, "libOSMesa is not here (package libosmesa6); try --platform egl");
+    self->context = self->create(attributes, NULL);
+    return self->context || fl_environment_error(diags, "OSMesa gives no OpenGL 3.3 core context");
+}
+
+static bool set_size(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags)
+{
+    platform_osmesa *self = (platform_osmesa *)platform;
     size_t bytes;
     if (!fl_size_mul(width, height, &bytes) || !fl_size_mul(bytes, 4, &bytes))
         return fl_out_of_memory(diags, "the offscreen window");
@@ -67,17 +84,10 @@ static bool set_size(platform_osmesa *self, uint32_t width, uint32_t height, fl_
     }
     free(self->buffer);
     self->buffer = buffer;
-    self->offscreen.width = width;
-    self->offscreen.height = height;
     return true;
 }
 
-static bool resize(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags)
-{
-    return set_size((platform_osmesa *)platform, width, height, diags);
-}
-
-static void destroy(vw_platform *platform)
+static void close_context(vw_platform *platform)
 {
     platform_osmesa *self = (platform_osmesa *)platform;
     if (self->context) {
@@ -85,14 +95,7 @@ static void destroy(vw_platform *platform)
         self->destroy(self->context);
     }
     /* The library stays loaded: Mesa's threads and handlers do not survive an unload. */
-    vw_offscreen_deinit(&self->offscreen);
     free(self->buffer);
-    free(self);
-}
-
-static void swap(vw_platform *platform)
-{
-    (void)platform;
 }
 
 static vw_gl_proc get_proc(void *platform, const char *name)
@@ -100,53 +103,12 @@ static vw_gl_proc get_proc(void *platform, const char *name)
     return ((platform_osmesa *)platform)->get_proc(name);
 }
 
-static const vw_platform_ops ops = {
-    .name = "osmesa",
-    .destroy = destroy,
-    .pump = vw_offscreen_pump,
-    .wake = vw_offscreen_wake,
-    .swap = swap,
-    .framebuffer_size = vw_offscreen_framebuffer_size,
-    .content_scale = vw_offscreen_content_scale,
-    .get_proc = get_proc,
-    .clipboard = vw_offscreen_clipboard,
-    .set_clipboard = vw_offscreen_set_clipboard,
-    .set_title = vw_offscreen_set_title,
-    .key_label = vw_offscreen_key_label,
-    .resize = resize,
-};
-
 vw_platform *vw_platform_osmesa_create(const vw_window_desc *desc, fl_diags *diags)
 {
-    static const int attributes[] = {OSMESA_FORMAT,
-                                     GL_RGBA,
-                                     OSMESA_DEPTH_BITS,
-                                     0,
-                                     OSMESA_PROFILE,
-                                     OSMESA_CORE_PROFILE,
-                                     OSMESA_CONTEXT_MAJOR_VERSION,
-                                     3,
-                                     OSMESA_CONTEXT_MINOR_VERSION,
-                                     3,
-                                     0};
-    platform_osmesa *self = calloc(1, sizeof *self);
-    if (!self || !vw_offscreen_init(&self->offscreen, &ops, desc)) {
-        free(self);
-        fl_out_of_memory(diags, "the offscreen window");
-        return NULL;
-    }
-    bool is_open = open_library(self);
-    if (!is_open)
-        fl_environment_error(diags,
-                             "libOSMesa is not here (package libosmesa6); try --platform egl");
-    if (is_open) {
-        self->context = self->create(attributes, NULL);
-        if (!self->context)
-            is_open = fl_environment_error(diags, "OSMesa gives no OpenGL 3.3 core context");
-    }
-    if (!is_open || !set_size(self, desc->width, desc->height, diags)) {
-        destroy(&self->offscreen.base);
-        return NULL;
-    }
-    return &self->offscreen.base;
+    static const vw_offscreen_kind kind = {.bytes = sizeof(platform_osmesa),
+                                           .ops = {.name = "osmesa", .get_proc = get_proc},
+                                           .open = open_context,
+                                           .set_size = set_size,
+                                           .close = close_context};
+    return vw_offscreen_create(&kind, desc, diags);
 }

@@ -2,65 +2,13 @@
  *
  * Undo, bookmarks, cameras as text, racking, watching files, and pictures that open again.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "viewer_kit.h"
 
-#include <cmocka.h>
 #include <math.h>
 #include <pthread.h>
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 
 #include "io/image_file.h"
-#include "io/state_text.h"
-#include "viewer/session.h"
 #include "viewer/watch.h"
-#include "viewer_loader.h"
-
-static char folder[] = "firstlight-features-XXXXXX";
-
-static void path_in_folder(const char *name, char out[256])
-{
-    snprintf(out, 256, "%s/%s", folder, name);
-}
-
-static void write_file(const char *name, const char *text, char out_path[256])
-{
-    path_in_folder(name, out_path);
-    FILE *file = fopen(out_path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-static void open_session(vw_session *session, const vw_options *options, const char *path)
-{
-    fl_diags diags = {0};
-    if (!vw_session_open(session, options, path, 0, 0, &diags))
-        fail_msg("%s", diags.items[0].message);
-    assert_true(vw_session_start(session, NULL, NULL, &diags));
-    assert_int_equal(diags.error_count, 0);
-}
-
-/* Press and release, handled as the window does. */
-static vw_dirty tap(vw_session *session, int key, int mods, uint64_t ms)
-{
-    fl_diags diags = {0};
-    unsigned all = 0;
-    for (int action = GLFW_PRESS; action >= GLFW_RELEASE; action--) {
-        vw_event event = {.kind = VW_EVENT_KEY, .code = key, .action = action, .mods = mods};
-        vw_dirty dirty = vw_input_event(&session->input, &session->state, &event, ms);
-        all |= vw_session_answer(session, dirty, &diags);
-    }
-    assert_int_equal(diags.error_count, 0);
-    return (vw_dirty)all;
-}
 
 static void undo_and_redo_walk_the_same_looks(void **unused)
 {
@@ -408,24 +356,13 @@ static void other_pictures_are_refused(void **unused)
     assert_true(fl_saved_state_is_for("a/b.EXR"));
 }
 
-static int make_folder(void **unused)
-{
-    (void)unused;
-    return mkdtemp(folder) ? 0 : -1;
-}
-
 static int remove_folder(void **unused)
 {
     (void)unused;
     static const char *const names[] = {"marks.txt", "marks.txt.views", "watched.txt", "other.txt",
                                         "fresh.txt", "state.png",       "state.exr",   "again.png",
                                         "again.exr", "plain.png"};
-    for (size_t i = 0; i < FL_COUNT_OF(names); i++) {
-        char path[256];
-        path_in_folder(names[i], path);
-        unlink(path);
-    }
-    return rmdir(folder);
+    return remove_files(names, FL_COUNT_OF(names));
 }
 
 int main(void)

@@ -3,62 +3,11 @@
  * Focus through mirrors and glass, sharpness and what stands behind the pixels: against the laws of
  * optics, single picks and the render's own counts. What is shown never touches the film.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "viewer_kit.h"
 
-#include <cmocka.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
-#include <unistd.h>
-
-#define GLFW_INCLUDE_NONE
-#include <GLFW/glfw3.h>
 
 #include "viewer/camera.h"
-#include "viewer/session.h"
-#include "viewer_loader.h"
-
-static char folder[] = "firstlight-optics-XXXXXX";
-
-static void path_in_folder(const char *name, char out[256])
-{
-    snprintf(out, 256, "%s/%s", folder, name);
-}
-
-static void write_file(const char *name, const char *text, char out_path[256])
-{
-    path_in_folder(name, out_path);
-    FILE *file = fopen(out_path, "w");
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
-static void open_session(vw_session *session, const vw_options *options, const char *path)
-{
-    fl_diags diags = {0};
-    if (!vw_session_open(session, options, path, 0, 0, &diags))
-        fail_msg("%s", diags.items[0].message);
-    assert_true(vw_session_start(session, NULL, NULL, &diags));
-    assert_int_equal(diags.error_count, 0);
-}
-
-/* Press and release, handled as the window does. */
-static vw_dirty tap(vw_session *session, int key, int mods, uint64_t ms)
-{
-    fl_diags diags = {0};
-    unsigned all = 0;
-    for (int action = GLFW_PRESS; action >= GLFW_RELEASE; action--) {
-        vw_event event = {.kind = VW_EVENT_KEY, .code = key, .action = action, .mods = mods};
-        vw_dirty dirty = vw_input_event(&session->input, &session->state, &event, ms);
-        all |= vw_session_answer(session, dirty, &diags);
-    }
-    assert_int_equal(diags.error_count, 0);
-    return (vw_dirty)all;
-}
 
 /* The focus that a click through the middle of the picture gives. */
 static double focus_through(const char *objects, double aperture, double x_px)
@@ -272,12 +221,6 @@ static void a_hundred_wishes_end_in_the_last(void **unused)
     free(picture.values);
     vw_guide_destroy(guide);
     vw_session_close(&session);
-}
-
-static int make_folder(void **unused)
-{
-    (void)unused;
-    return mkdtemp(folder) ? 0 : -1;
 }
 
 static int remove_folder(void **unused)
