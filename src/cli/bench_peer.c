@@ -10,16 +10,15 @@ const bench_peer *bench_peer_load(const char *name, const char **out_config, fl_
 {
     int name_length = (int)strcspn(name, ":");
     *out_config = name[name_length] ? name + name_length + 1 : "";
-    char path[1024], file[128];
-    ssize_t length = readlink("/proc/self/exe", path, sizeof path - 1);
-    path[length > 0 ? length : 0] = 0;
-    char *slash = strrchr(path, '/');
+    char program[1024], file[128], path[sizeof program + sizeof file];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = 0;
+    char *slash = strrchr(program, '/');
+    if (slash)
+        slash[1] = 0;
     snprintf(file, sizeof file, "firstlight-%.*s.so", name_length, name);
-    void *module = NULL;
-    if (slash && (size_t)(slash + 1 - path) + strlen(file) < sizeof path) {
-        strcpy(slash + 1, file);
-        module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    }
+    snprintf(path, sizeof path, "%s%s", program, file);
+    void *module = slash ? dlopen(path, RTLD_NOW | RTLD_LOCAL) : NULL;
     if (!module)
         module = dlopen(file, RTLD_NOW | RTLD_LOCAL);
     const bench_peer *peer = module ? dlsym(module, "bench_peer_module") : NULL;

@@ -3,6 +3,7 @@
  * Nearest-hit and any-hit kernels. Compiled once an instruction set, with FL_W and FL_ISA defined
  * (wide.h).
  */
+#include "core/kernel_isect_octree.h"
 #include "core/kernel_isect_shapes.h"
 #include "core/kernel_isect_stream.h"
 #include "core/resolve.h"
@@ -17,6 +18,14 @@ static void walk_mesh_nearest(packet *p, const mesh_target *target)
 static void walk_mesh_any(packet *p, const mesh_target *target)
 {
     packet_walk(p, target, true);
+}
+
+static void walk_octree(packet *p, const mesh_target *target, const bool is_any)
+{
+    if (is_any)
+        packet_walk_octree(p, target, true);
+    else
+        packet_walk_octree(p, target, false);
 }
 
 /* Rays [first, first + count) of the chunk against a mesh in its own space. */
@@ -59,7 +68,9 @@ FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint32_t first, uint32
         return;
     mesh_target target = {&j->geometry->meshes[instance->index], instance->object,
                           &j->context->counts};
-    if (!target.mesh->bvh || __builtin_popcountll(p.lanes) < PACKET_RAYS_MIN)
+    if (target.mesh->octree)
+        walk_octree(&p, &target, is_any);
+    else if (!target.mesh->bvh || __builtin_popcountll(p.lanes) < PACKET_RAYS_MIN)
         packet_walk_alone(&p, &target, is_any);
     else if (is_any)
         walk_mesh_any(&p, &target);

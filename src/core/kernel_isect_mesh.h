@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Layer 4, private: one ray against a mesh, through its hierarchy, its octree or all of its packs.
+ * Layer 4, private: one ray against a mesh, through its hierarchy or all of its packs.
  *
  * The triangle test is watertight [Woop, Benthin, Wald 2013]: corners are translated to the ray's
  * origin and sheared so that the ray is an axis; signs of three edge functions decide. In float,
@@ -245,78 +245,6 @@ static inline void ray_walk_bvh(ray *r, const mesh_target *target, const bool is
     }
 }
 
-/* --- Octree ---------------------------------------------------------------------------------- */
-
-typedef struct cell_visit {
-    float near;
-    uint32_t child;
-    float lo[3], size[3];
-} cell_visit;
-
-/* Mirrored into the first octant, every ray meets the octants in an order that ascending numbers
- * respect: number k of the mirrored cell is octant k ^ mirror of the true one. Pushed descending,
- * so the nearest is popped first. */
-static inline uint32_t push_octants(const ray *r, const fl_octree *tree, const cell_visit *cell,
-                                    cell_visit *stack, uint32_t height)
-{
-    const fl_octree_node *node = &tree->nodes[cell->child];
-    uint32_t mirror = (uint32_t)(r->down[0] | r->down[1] << 1 | r->down[2] << 2);
-    float near[3][2], far[3][2], half[3];
-    for (int a = 0; a < 3; a++) {
-        half[a] = 0.5f * cell->size[a];
-        for (uint32_t h = 0; h < 2; h++) {
-            bool is_upper = (h ^ (uint32_t)r->down[a]) != 0;
-            float lo = is_upper ? cell->lo[a] + half[a] : cell->lo[a], hi = lo + half[a];
-            lo = lo - tree->pad;
-            hi = hi + tree->pad;
-            near[a][h] = ((r->down[a] ? hi : lo) - r->enter_o[a]) * r->inverse[a];
-            far[a][h] = ((r->down[a] ? lo : hi) - r->leave_o[a]) * r->inverse[a];
-        }
-    }
-    for (uint32_t k = 8; k-- > 0;) {
-        uint32_t octant = k ^ mirror;
-        if (node->child[octant] == FL_NONE)
-            continue;
-        cell_visit c = {0.0f, node->child[octant], {0}, {half[0], half[1], half[2]}};
-        float leave = r->n.t;
-        for (int a = 0; a < 3; a++) {
-            uint32_t h = k >> a & 1u;
-            c.near = near[a][h] > c.near ? near[a][h] : c.near;
-            leave = far[a][h] < leave ? far[a][h] : leave;
-            c.lo[a] = octant >> a & 1u ? cell->lo[a] + half[a] : cell->lo[a];
-        }
-        if (c.near <= leave)
-            stack[height++] = c;
-    }
-    return height;
-}
-
-static void ray_walk_octree(ray *r, const mesh_target *target, const bool is_any)
-{
-    const fl_octree *tree = target->mesh->octree;
-    cell_visit stack[FL_OCTREE_STACK_MAX + 1];
-    stack[0] = (cell_visit){0.0f,
-                            tree->root,
-                            {tree->lo[0], tree->lo[1], tree->lo[2]},
-                            {tree->size[0], tree->size[1], tree->size[2]}};
-    for (uint32_t height = 1; height > 0;) {
-        cell_visit cell = stack[--height];
-        if (cell.near > r->n.t)
-            continue;
-        if (!(cell.child & FL_BVH_LEAF)) {
-            target->counts->node_visits++;
-            height = push_octants(r, tree, &cell, stack, height);
-            continue;
-        }
-        const fl_octree_leaf *leaf = &tree->leaves[cell.child & ~FL_BVH_LEAF];
-        target->counts->primitive_tests += leaf->count;
-        for (uint32_t k = 0; k < (leaf->count + 7) / 8; k++)
-            needle_meet_pack(&r->n, target, &target->mesh->packs[leaf->first_pack + k], is_any);
-        if (is_any && r->n.t < 0.0f)
-            return;
-    }
-}
-
 /* --- All of them ----------------------------------------------------------------------------- */
 
 static void ray_walk_all(ray *r, const mesh_target *target, const bool is_any)
@@ -334,8 +262,6 @@ FL_INLINE void ray_walk(ray *r, const mesh_target *target, const bool is_any)
 {
     if (target->mesh->bvh)
         ray_walk_bvh(r, target, is_any);
-    else if (target->mesh->octree)
-        ray_walk_octree(r, target, is_any);
     else
         ray_walk_all(r, target, is_any);
 }

@@ -4,23 +4,33 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LISTINGS_PER_BOX = 32 };
+#include "core/vec.h"
+
+enum { LISTINGS_PER_FACE = 32, LEAF_ITEMS_MIN = 2 };
+
+/* In tests of a ray against a triangle. */
+static const double node_cost = 8.0;
 
 typedef struct cell {
     float lo[3], size[3];
 } cell;
 
 typedef struct builder {
-    const fl_bvh_box *boxes;
+    const fl_octree_faces *faces;
     float pad;
     uint32_t height;
-    size_t listing_count, listing_max; /* Over all cells not yet finished and finished. */
     fl_octree_node *nodes;
     fl_octree_leaf *leaves;
     uint32_t *items;
     size_t node_count, node_capacity, leaf_count, leaf_capacity, item_count, item_capacity;
     bool failed;
 } builder;
+
+/* What became of a cell: a child, and the expected cost of a ray that meets the cell. */
+typedef struct built {
+    uint32_t child;
+    double cost;
+} built;
 
 static bool reserve(void **array, size_t *capacity, size_t needed, size_t item_bytes)
 {
@@ -45,16 +55,69 @@ static cell octant(const cell *c, uint32_t k)
     return child;
 }
 
-static bool overlaps(const builder *b, const cell *c, uint32_t item)
+/* --- Does a triangle overlap a box? ---------------------------------------------------------- */
+
+/* Is the box of half sides h around 0 wholly on one side of the triangle v along `axis`? Rounding,
+ * relative to the products that made the axis, must not make it so. */
+static bool is_apart(fl_vec3 axis, double axis_size, const fl_vec3 v[3], fl_vec3 h)
 {
-    const fl_bvh_box *box = &b->boxes[item];
-    for (int a = 0; a < 3; a++)
-        if (box->lo[a] - b->pad > c->lo[a] + c->size[a] || box->hi[a] + b->pad < c->lo[a])
+    double least = HUGE_VAL, most = -HUGE_VAL, size = 0.0;
+    for (int k = 0; k < 3; k++) {
+        double at = fl_v3_dot(axis, v[k]);
+        least = fl_min(at, least);
+        most = fl_max(at, most);
+        size = fl_max(fl_v3_max_abs(v[k]), size);
+    }
+    double reach = fabs(axis.x) * h.x + fabs(axis.y) * h.y + fabs(axis.z) * h.z;
+    reach += 0x1p-48 * axis_size * size;
+    return least > reach || most < -reach;
+}
+
+/* By the separating axes other than those of the box: the triangle's normal, and edges of one
+ * across edges of the other. */
+static bool triangle_overlaps(const fl_vec3 v[3], fl_vec3 h)
+{
+    fl_vec3 edge[3];
+    double size[3];
+    for (int k = 0; k < 3; k++) {
+        edge[k] = fl_v3_sub(v[(k + 1) % 3], v[k]);
+        size[k] = fl_v3_max_abs(edge[k]);
+    }
+    if (is_apart(fl_v3_cross(edge[0], edge[1]), size[0] * size[1], v, h))
+        return false;
+    for (int k = 0; k < 3; k++) {
+        fl_vec3 e = edge[k];
+        if (is_apart(fl_v3(0.0, -e.z, e.y), size[k], v, h) ||
+            is_apart(fl_v3(e.z, 0.0, -e.x), size[k], v, h) ||
+            is_apart(fl_v3(-e.y, e.x, 0.0), size[k], v, h))
             return false;
+    }
     return true;
 }
 
-static uint32_t add_leaf(builder *b, const uint32_t *items, uint32_t count)
+static bool overlaps(const builder *b, const cell *c, uint32_t face)
+{
+    const uint32_t *corner = b->faces->index + 3 * (size_t)face;
+    double mid[3], half[3], v[3][3];
+    for (int a = 0; a < 3; a++) {
+        float lo = c->lo[a] - b->pad, hi = c->lo[a] + c->size[a] + b->pad, x[3];
+        for (int k = 0; k < 3; k++)
+            x[k] = b->faces->position[3 * (size_t)corner[k] + (size_t)a];
+        if ((x[0] > hi && x[1] > hi && x[2] > hi) || (x[0] < lo && x[1] < lo && x[2] < lo))
+            return false;
+        mid[a] = 0.5 * ((double)lo + (double)hi);
+        half[a] = 0.5 * ((double)hi - (double)lo);
+        for (int k = 0; k < 3; k++)
+            v[k][a] = (double)x[k] - mid[a];
+    }
+    const fl_vec3 corners[3] = {fl_v3(v[0][0], v[0][1], v[0][2]), fl_v3(v[1][0], v[1][1], v[1][2]),
+                                fl_v3(v[2][0], v[2][1], v[2][2])};
+    return triangle_overlaps(corners, fl_v3(half[0], half[1], half[2]));
+}
+
+/* --- Cutting --------------------------------------------------------------------------------- */
+
+static built add_leaf(builder *b, const uint32_t *items, uint32_t count)
 {
     void *leaves = b->leaves, *list = b->items;
     b->failed |= !reserve(&leaves, &b->leaf_capacity, b->leaf_count + 1, sizeof *b->leaves);
@@ -62,88 +125,104 @@ static uint32_t add_leaf(builder *b, const uint32_t *items, uint32_t count)
     b->failed |= !reserve(&list, &b->item_capacity, b->item_count + count, sizeof *b->items);
     b->items = list;
     if (b->failed)
-        return FL_NONE;
+        return (built){FL_NONE, 0.0};
     memcpy(&b->items[b->item_count], items, count * sizeof *items);
     b->leaves[b->leaf_count] = (fl_octree_leaf){(uint32_t)b->item_count, count, 0};
     b->item_count += count;
-    return FL_BVH_LEAF | (uint32_t)b->leaf_count++;
+    return (built){FL_BVH_LEAF | (uint32_t)b->leaf_count++, count};
 }
 
-/* Lists of all octants behind each other; NULL with *is_worth false when cutting does not pay. */
+/* Lists of all octants behind each other; NULL where cutting cannot pay, and when out of memory. A
+ * quarter of the rays that meet a cell meet an octant: that is its share of the surface. */
 static uint32_t *distribute(builder *b, const cell *c, const uint32_t *items, uint32_t count,
-                            uint32_t out_counts[8], bool *is_worth)
+                            size_t budget, uint32_t out_counts[8])
 {
-    size_t total = 0;
-    *is_worth = false;
-    for (uint32_t k = 0; k < 8; k++) {
-        cell child = octant(c, k);
-        out_counts[k] = 0;
-        for (uint32_t i = 0; i < count; i++)
-            out_counts[k] += overlaps(b, &child, items[i]);
-        total += out_counts[k];
-    }
-    if (b->listing_count + total > b->listing_max || total >= (size_t)8 * count)
-        return NULL;
-    *is_worth = true;
-    uint32_t *lists = malloc((total + 1) * sizeof *lists), *out = lists;
+    uint32_t *lists = malloc(8 * (size_t)count * sizeof *lists), *out = lists;
     if (!lists) {
         b->failed = true;
         return NULL;
     }
     for (uint32_t k = 0; k < 8; k++) {
         cell child = octant(c, k);
+        const uint32_t *begin = out;
         for (uint32_t i = 0; i < count; i++)
             if (overlaps(b, &child, items[i]))
                 *out++ = items[i];
+        out_counts[k] = (uint32_t)(out - begin);
     }
-    b->listing_count += total > count ? total - count : 0;
-    return lists;
+    size_t total = (size_t)(out - lists);
+    if (total <= budget && node_cost + 0.25 * (double)total < count)
+        return lists;
+    free(lists);
+    return NULL;
 }
 
-/* Recursion is bounded by the height. */
-static uint32_t build_cell(builder *b, const cell *c, const uint32_t *items, uint32_t count,
-                           uint32_t depth)
+static uint32_t add_node(builder *b, const cell *c)
+{
+    void *nodes = b->nodes;
+    b->failed |= !reserve(&nodes, &b->node_capacity, b->node_count + 1, sizeof *b->nodes);
+    b->nodes = nodes;
+    if (b->failed)
+        return FL_NONE;
+    cell first = octant(c, 0), last = octant(c, 7);
+    fl_octree_node *node = &b->nodes[b->node_count];
+    for (int a = 0; a < 3; a++) {
+        node->plane[a][0] = first.lo[a] - b->pad;
+        node->plane[a][1] = last.lo[a] - b->pad;
+        node->plane[a][2] = first.lo[a] + first.size[a] + b->pad;
+        node->plane[a][3] = last.lo[a] + last.size[a] + b->pad;
+    }
+    return (uint32_t)b->node_count++;
+}
+
+/* `budget`: listings that may come of the cell's, so that large faces do not fill memory. Recursion
+ * is bounded by the height. */
+static built build_cell(builder *b, const cell *c, const uint32_t *items, uint32_t count,
+                        size_t budget, uint32_t depth)
 {
     if (count == 0 || b->failed)
-        return FL_NONE;
-    if (count <= FL_OCTREE_LEAF_ITEMS || depth >= b->height)
+        return (built){FL_NONE, 0.0};
+    if (count <= LEAF_ITEMS_MIN || depth >= b->height)
         return add_leaf(b, items, count);
     uint32_t counts[8];
-    bool is_worth;
-    uint32_t *lists = distribute(b, c, items, count, counts, &is_worth);
-    if (!is_worth)
+    uint32_t *lists = distribute(b, c, items, count, budget, counts);
+    if (!lists)
         return add_leaf(b, items, count);
-    void *nodes = b->nodes;
-    b->failed |= !lists || !reserve(&nodes, &b->node_capacity, b->node_count + 1, sizeof *b->nodes);
-    b->nodes = nodes;
-    if (b->failed) {
-        free(lists);
-        return FL_NONE;
-    }
-    uint32_t node = (uint32_t)b->node_count++;
+    const size_t nodes = b->node_count, leaves = b->leaf_count, listed = b->item_count;
+    built result = {add_node(b, c), node_cost};
+    size_t total = 0;
+    for (uint32_t k = 0; k < 8; k++)
+        total += counts[k];
     const uint32_t *list = lists;
-    for (uint32_t k = 0; k < 8; k++) {
+    for (uint32_t k = 0; k < 8 && !b->failed; k++) {
         cell child = octant(c, k);
-        uint32_t built = build_cell(b, &child, list, counts[k], depth + 1);
-        b->nodes[node].child[k] = built;
+        size_t share = (size_t)((double)budget / (double)total * (double)counts[k]);
+        built part = build_cell(b, &child, list, counts[k], share, depth + 1);
+        b->nodes[result.child].child[k] = part.child;
+        result.cost += 0.25 * part.cost;
         list += counts[k];
     }
     free(lists);
-    return node;
+    if (result.cost < count || b->failed)
+        return result;
+    b->node_count = nodes;
+    b->leaf_count = leaves;
+    b->item_count = listed;
+    return add_leaf(b, items, count);
 }
 
-static cell root_cell(const fl_bvh_box *boxes, uint32_t count, float pad)
+static cell root_cell(const fl_octree_faces *faces, float pad)
 {
-    fl_bvh_box all = boxes[0];
-    for (uint32_t i = 1; i < count; i++)
-        for (int a = 0; a < 3; a++) {
-            all.lo[a] = boxes[i].lo[a] < all.lo[a] ? boxes[i].lo[a] : all.lo[a];
-            all.hi[a] = boxes[i].hi[a] > all.hi[a] ? boxes[i].hi[a] : all.hi[a];
-        }
     cell c;
-    for (int a = 0; a < 3; a++) {
-        c.lo[a] = all.lo[a] - pad;
-        c.size[a] = (all.hi[a] - all.lo[a]) + 3.0f * pad;
+    for (size_t a = 0; a < 3; a++) {
+        float lo = INFINITY, hi = -INFINITY;
+        for (size_t i = 0; i < 3 * (size_t)faces->count; i++) {
+            float x = faces->position[3 * (size_t)faces->index[i] + a];
+            lo = x < lo ? x : lo;
+            hi = x > hi ? x : hi;
+        }
+        c.lo[a] = lo - pad;
+        c.size[a] = (hi - lo) + 3.0f * pad;
     }
     return c;
 }
@@ -170,23 +249,20 @@ static bool settle(fl_octree *out, fl_arena *arena, const builder *b)
     return true;
 }
 
-bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_bvh_box *boxes,
-                     uint32_t count, uint32_t height, float pad, float origin_pad)
+bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_octree_faces *faces,
+                     uint32_t height, float pad)
 {
-    FL_ASSERT(count >= 1 && height >= 1 && height <= FL_OCTREE_HEIGHT_MAX);
-    uint32_t *all = malloc(count * sizeof *all);
+    FL_ASSERT(faces->count >= 1 && height >= 1 && height <= FL_OCTREE_HEIGHT_MAX);
+    uint32_t *all = malloc(faces->count * sizeof *all);
     if (!all)
         return false;
-    for (uint32_t i = 0; i < count; i++)
+    for (uint32_t i = 0; i < faces->count; i++)
         all[i] = i;
-    builder b = {.boxes = boxes,
-                 .pad = pad,
-                 .height = height,
-                 .listing_count = count,
-                 .listing_max = (size_t)LISTINGS_PER_BOX * count};
-    cell root = root_cell(boxes, count, pad);
-    fl_octree result = {.pad = pad, .origin_pad = origin_pad};
-    result.root = build_cell(&b, &root, all, count, 0);
+    builder b = {.faces = faces, .pad = pad, .height = height};
+    cell root = root_cell(faces, pad);
+    fl_octree result = {0};
+    result.root =
+        build_cell(&b, &root, all, faces->count, (size_t)LISTINGS_PER_FACE * faces->count, 0).child;
     memcpy(result.lo, root.lo, sizeof root.lo);
     memcpy(result.size, root.size, sizeof root.size);
     bool ok = !b.failed && settle(&result, arena, &b);

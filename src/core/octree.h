@@ -1,22 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * Layer 3: octree by uniform subdivision: every cell is cut into eight equal ones, a box is listed
- * in every leaf cell that it overlaps, height at most 8. The classic structure of the source
- * project, kept beside the hierarchy of boxes to compare with.
+ * Layer 3: octree over triangles by uniform subdivision: every cell is cut into eight equal ones, a
+ * triangle is listed in every leaf that it overlaps, height at most 8. The classic structure of the
+ * source project, kept beside the hierarchy of boxes to compare with.
  */
 #ifndef FL_OCTREE_H
 #define FL_OCTREE_H
 
 #include "core/bvh.h"
 
-enum {
-    FL_OCTREE_HEIGHT_MAX = 8,
-    FL_OCTREE_LEAF_ITEMS = 8, /**< Cells with more are cut, down to the height. */
-    FL_OCTREE_STACK_MAX = 7 * FL_OCTREE_HEIGHT_MAX + 1
-};
+enum { FL_OCTREE_HEIGHT_MAX = 8, FL_OCTREE_STACK_MAX = 7 * FL_OCTREE_HEIGHT_MAX + 1 };
 
 /* A child is FL_NONE (an empty cell), an inner node's index, or FL_BVH_LEAF | leaf index. */
 typedef struct fl_octree_node {
+    /** Where its octants end along each axis, widened: the lower half from [0] to [2], the upper
+     * one from [1] to [3]. Seen from the other side the same holds of 3 - k. */
+    float plane[3][4];
     uint32_t child[8]; /**< Bit 0: upper half in x; bit 1: y; bit 2: z. */
 } fl_octree_node;
 
@@ -32,15 +31,22 @@ typedef struct fl_octree {
     uint32_t *items;
     uint32_t root; /**< A child as above. */
     uint32_t node_count, leaf_count, item_count, pack_count;
-    float lo[3], size[3]; /**< The root's cell. */
-    float pad; /**< A walk widens cells by pad + origin_pad * (largest coordinate of the origin). */
-    float origin_pad;
+    float lo[3], size[3]; /**< The root's cell, not widened. */
 } fl_octree;
 
-/** Build over boxes[0 .. count), count >= 1, each widened by `pad`. Where cutting would multiply
- * the listings (more than 32 a box in all) cells stay whole. False: out of memory. O(n * height).
+/** 3 floats a position, 3 indices a face. */
+typedef struct fl_octree_faces {
+    const float *position;
+    const uint32_t *index;
+    uint32_t count;
+} fl_octree_faces;
+
+/** Build over faces, at least one, in cells widened by `pad`. A face is listed where the triangle
+ * itself overlaps, not just its box [Akenine-Moller 2001], and cells are cut as long as the surface
+ * area heuristic calls that cheaper; listings stay below 32 a face. False: out of memory. O(n *
+ * height).
  */
-bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_bvh_box *boxes,
-                     uint32_t count, uint32_t height, float pad, float origin_pad);
+bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_octree_faces *faces,
+                     uint32_t height, float pad);
 
 #endif
