@@ -117,7 +117,9 @@ static void apply_options(const cli_options *o, fl_params *params)
     if (cli_has(o, CLI_OPT_SAMPLER))
         params->sampler = (fl_sampler)o->sampler;
     if (cli_has(o, CLI_OPT_REVOLVE_SOLVER))
-        params->solver = (fl_revolve_solver)o->solver;
+        params->solver = o->solver ? FL_REVOLVE_NEWTON : FL_REVOLVE_ROBUST;
+    if (params->solver != FL_REVOLVE_ROBUST && cli_has(o, CLI_OPT_REVOLVE_STARTS))
+        params->solver = o->revolve_starts;
 }
 
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)

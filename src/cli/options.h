@@ -36,6 +36,7 @@ typedef enum cli_option_id {
     CLI_OPT_SEED,
     CLI_OPT_SAMPLER,
     CLI_OPT_REVOLVE_SOLVER,
+    CLI_OPT_REVOLVE_STARTS,
     CLI_OPT_ACCEL,
     CLI_OPT_OCTREE_HEIGHT,
     CLI_OPT_ISA,
@@ -79,7 +80,7 @@ typedef enum cli_command_id {
 typedef struct cli_options {
     uint64_t given; /**< Bit per cli_option_id. */
     uint32_t size[2], crop[4], pixel[3];
-    uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats;
+    uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats, revolve_starts;
     double time_s, budget_s, noise, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
     uint32_t sampler, solver, accel, dialect; /**< Values of the core's enums. */

@@ -165,10 +165,17 @@ static bool add_accels(study_plan *plan, const cli_scene *scene, uint32_t thread
 
 static void add_solvers(study_plan *plan)
 {
-    bool is_newton = plan->configs[0].params.solver == FL_REVOLVE_NEWTON;
-    study_config *c = add(plan, STUDY_SOLVER, is_newton ? "robust" : "newton");
-    c->params.solver = is_newton ? FL_REVOLVE_ROBUST : FL_REVOLVE_NEWTON;
-    c->is_biased = true; /* Newton loses hits. */
+    static const fl_revolve_solver values[] = {FL_REVOLVE_ROBUST, 2, 4, FL_REVOLVE_NEWTON, 16};
+    for (uint32_t i = 0; i < FL_COUNT_OF(values); i++) {
+        char text[24] = "robust";
+        if (values[i] != FL_REVOLVE_ROBUST)
+            snprintf(text, sizeof text, "newton-%u", values[i]);
+        if (values[i] == plan->configs[0].params.solver)
+            continue;
+        study_config *c = add(plan, STUDY_SOLVER, text);
+        c->params.solver = values[i];
+        c->is_biased = true; /* Newton loses hits. */
+    }
 }
 
 bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_max,

@@ -99,6 +99,9 @@ static bool check_limits(const fl_params *p, fl_diags *diags)
         is_fine =
             fl_error(diags, nowhere, "the light samples must be from 1 to %d, got %u",
                      FL_LIGHT_SAMPLES_MAX, fl_max_u32(p->light_samples, p->light_samples_default));
+    if (p->solver > FL_REVOLVE_MAX_STARTS)
+        is_fine = fl_error(diags, nowhere, "Newton's method takes 1 to %d starts a segment, got %u",
+                           FL_REVOLVE_MAX_STARTS, p->solver);
     if (!is_float3(p->background))
         is_fine = fl_error(diags, nowhere, "the background colour must be finite");
     if (!is_float3(p->ambient))

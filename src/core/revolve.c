@@ -158,8 +158,8 @@ bool fl_revolve_nearest(const fl_revolve *revolve, const double o[3], const doub
                         double u_min, double u_max, fl_revolve_solver solver,
                         fl_revolve_hit *out_hit)
 {
-    if (solver == FL_REVOLVE_NEWTON)
-        return fl_revolve_newton(revolve, o, d, u_min, u_max, out_hit);
+    if (solver != FL_REVOLVE_ROBUST)
+        return fl_revolve_newton(revolve, o, d, u_min, u_max, solver, out_hit);
     return revolve->ops->nearest(revolve, o, d, u_min, u_max, out_hit);
 }
 
@@ -167,8 +167,8 @@ bool fl_revolve_any(const fl_revolve *revolve, const double o[3], const double d
                     double u_max, fl_revolve_solver solver)
 {
     fl_revolve_hit hit;
-    if (solver == FL_REVOLVE_NEWTON)
-        return fl_revolve_newton(revolve, o, d, u_min, u_max, &hit);
+    if (solver != FL_REVOLVE_ROBUST)
+        return fl_revolve_newton(revolve, o, d, u_min, u_max, solver, &hit);
     return revolve->ops->any(revolve, o, d, u_min, u_max);
 }
 
@@ -178,14 +178,14 @@ uint32_t fl_revolve_reject8(const fl_revolve *revolve, const fl_revolve_packet *
 }
 
 static uint32_t newton8(const fl_revolve *revolve, const fl_revolve_packet *rays, uint32_t mask,
-                        fl_revolve_hit *out_hits)
+                        uint32_t starts, fl_revolve_hit *out_hits)
 {
     uint32_t hits = 0;
     for (uint32_t i = 0; i < FL_REVOLVE_PACKET; i++) {
         double o[3] = {rays->ox[i], rays->oy[i], rays->oz[i]},
                d[3] = {rays->dx[i], rays->dy[i], rays->dz[i]};
         if ((mask >> i & 1u) &&
-            fl_revolve_newton(revolve, o, d, rays->u_min[i], rays->u_max[i], &out_hits[i]))
+            fl_revolve_newton(revolve, o, d, rays->u_min[i], rays->u_max[i], starts, &out_hits[i]))
             hits |= 1u << i;
     }
     return hits;
@@ -195,8 +195,8 @@ uint32_t fl_revolve_nearest8(const fl_revolve *revolve, const fl_revolve_packet 
                              uint32_t mask, fl_revolve_solver solver,
                              fl_revolve_hit out_hits[FL_REVOLVE_PACKET])
 {
-    if (solver == FL_REVOLVE_NEWTON)
-        return newton8(revolve, rays, mask, out_hits);
+    if (solver != FL_REVOLVE_ROBUST)
+        return newton8(revolve, rays, mask, solver, out_hits);
     return revolve->ops->nearest8(revolve, rays, mask, out_hits);
 }
 
@@ -204,8 +204,8 @@ uint32_t fl_revolve_any8(const fl_revolve *revolve, const fl_revolve_packet *ray
                          fl_revolve_solver solver)
 {
     fl_revolve_hit hits[FL_REVOLVE_PACKET];
-    if (solver == FL_REVOLVE_NEWTON)
-        return newton8(revolve, rays, mask, hits);
+    if (solver != FL_REVOLVE_ROBUST)
+        return newton8(revolve, rays, mask, solver, hits);
     return revolve->ops->any8(revolve, rays, mask);
 }
 

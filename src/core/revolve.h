@@ -16,10 +16,11 @@
 #include "core/scene.h"
 #include "core/vec.h"
 
-typedef enum fl_revolve_solver {
-    FL_REVOLVE_ROBUST, /**< Certified: finds the nearest root, always. */
-    FL_REVOLVE_NEWTON  /**< Newton from eight starts a segment: the baseline; misses some. */
-} fl_revolve_solver;
+/** Newton's iteration from so many starts a segment, the baseline, which misses some hits; 0: the
+ * certified solver, which finds the nearest root, always. */
+typedef uint32_t fl_revolve_solver;
+
+enum { FL_REVOLVE_ROBUST = 0, FL_REVOLVE_NEWTON = 8, FL_REVOLVE_MAX_STARTS = 64 };
 
 enum { FL_REVOLVE_MAX_DEGREE = 15, FL_REVOLVE_MAX_SEGMENTS = 10000, FL_REVOLVE_PACKET = 8 };
 

@@ -129,8 +129,8 @@ bool fl_revolve_split(fl_revolve *revolve, fl_arena *arena, const double *x, con
 /** Boxes of the pieces and the levels above them. False: out of memory. */
 bool fl_revolve_group_boxes(fl_revolve *revolve, fl_arena *arena);
 
-/** The baseline. */
+/** The baseline, from `starts` points a segment. */
 bool fl_revolve_newton(const fl_revolve *revolve, const double o[3], const double d[3],
-                       double u_min, double u_max, fl_revolve_hit *out_hit);
+                       double u_min, double u_max, uint32_t starts, fl_revolve_hit *out_hit);
 
 #endif

@@ -2,12 +2,12 @@
  *
  * The baseline: the method of the classic course project, Newton's iteration on
  *     h(t) = sqrt(A (y(t) - B)^2 + C) - |x(t)|
- * from the middles of eight equal parts of every segment, nothing skipped. Kept as it is so that
+ * from the middles of equal parts of every segment, nothing skipped. Kept as it is so that
  * the trade stays measurable; its misses are its own (docs/revolution.md).
  */
 #include "core/revolve_impl.h"
 
-enum { STARTS = 8, MAX_STEPS = 20 };
+enum { MAX_STEPS = 20 };
 
 #define FLAT 1e-4 /* |d_y| / |d| below which y(t) = o_y is solved first */
 
@@ -92,7 +92,7 @@ static void find_piece(const fl_revolve *revolve, fl_revolve_hit *hit)
 }
 
 bool fl_revolve_newton(const fl_revolve *revolve, const double o[3], const double d[3],
-                       double u_min, double u_max, fl_revolve_hit *out_hit)
+                       double u_min, double u_max, uint32_t starts, fl_revolve_hit *out_hit)
 {
     ray r = {.ox = o[0] * revolve->unit,
              .oy = o[1] * revolve->unit - revolve->y_center,
@@ -110,8 +110,8 @@ bool fl_revolve_newton(const fl_revolve *revolve, const double o[3], const doubl
     bool found = false;
     for (uint32_t s = 0; s < revolve->segment_count; s++) {
         const double *cx = revolve->newton + (size_t)s * 2 * (n + 1), *cy = cx + n + 1;
-        for (int start = 0; start < STARTS; start++) {
-            double t = (start + 0.5) / STARTS, u[2];
+        for (uint32_t start = 0; start < starts; start++) {
+            double t = (start + 0.5) / starts, u[2];
             int count = solve_start(&r, cx, cy, n, &t, u);
             for (int i = 0; i < count; i++) {
                 if (u[i] > u_min && u[i] < u_max) {

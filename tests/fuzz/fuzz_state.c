@@ -87,7 +87,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
         fl_saved_state_apply(&state, &params);
         if (fl_params_check(&params, &diags)) {
             MUST(params.sampler <= FL_SAMPLER_PADDED);
-            MUST(params.solver <= FL_REVOLVE_NEWTON);
+            MUST(params.solver <= FL_REVOLVE_MAX_STARTS);
             MUST(params.width >= 1 && params.width <= FL_SIDE_MAX);
             check_written(&params);
         }

@@ -131,6 +131,8 @@ static void bounds_are_enforced(void **state)
     ACCEPTS((p.crop_w = 10, p.crop_h = 10, p.crop_x = 630, p.crop_y = 630));
     REJECTS(p.depth_limit = FL_DEPTH_MAX + 1, "depth");
     ACCEPTS(p.depth_limit = FL_DEPTH_MAX);
+    REJECTS(p.solver = FL_REVOLVE_MAX_STARTS + 1, "Newton");
+    ACCEPTS(p.solver = FL_REVOLVE_MAX_STARTS);
     REJECTS(p.weight_threshold = -1, "threshold");
     REJECTS(p.weight_threshold = nan, "threshold");
     REJECTS(p.light_samples = FL_LIGHT_SAMPLES_MAX + 1, "light samples");

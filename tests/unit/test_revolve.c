@@ -325,6 +325,27 @@ static void test_newton_finds_plain_hits(void **state)
     fl_arena_deinit(&s.arena);
 }
 
+/* The knob does something: one start a segment loses hits that eight find, and 64 lose none of
+ * those. */
+static void test_newton_finds_more_from_more_starts(void **state)
+{
+    (void)state;
+    static const fl_revolve_solver starts[] = {1, FL_REVOLVE_NEWTON, FL_REVOLVE_MAX_STARTS};
+    uint32_t hits[3] = {0};
+    shape s;
+    build(&s, vase, 1, 3);
+    for (int i = 0; i < 10000; i++) {
+        double o[3] = {0.1, 1.8, -4}, d[3] = {i % 100 / 100.0 - 0.5, i / 100 / 100.0 - 0.7, 1.6};
+        fl_revolve_hit hit;
+        for (int k = 0; k < 3; k++)
+            hits[k] += fl_revolve_any(s.revolve, o, d, 0.0, HUGE_VAL, starts[k]) &&
+                       fl_revolve_nearest(s.revolve, o, d, 0.0, HUGE_VAL, starts[k], &hit);
+    }
+    print_message("hits from 1, 8 and 64 starts: %u, %u, %u\n", hits[0], hits[1], hits[2]);
+    assert_true(hits[0] > 1000 && hits[0] < hits[1] && hits[1] <= hits[2]);
+    fl_arena_deinit(&s.arena);
+}
+
 /* As many pieces as allowed: built in seconds, and hit. */
 static void test_ten_thousand_segments(void **state)
 {
@@ -363,6 +384,7 @@ int main(void)
         cmocka_unit_test(test_scale),
         cmocka_unit_test(test_packets_and_instruction_sets_agree),
         cmocka_unit_test(test_newton_finds_plain_hits),
+        cmocka_unit_test(test_newton_finds_more_from_more_starts),
         cmocka_unit_test(test_ten_thousand_segments),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
