@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/noise.h"
 
 static const char *const severity_names[] = {"note", "warning", "error"};
 
@@ -55,7 +56,8 @@ static json_t *tree_json(const cli_options *options, const cli_scene *scene)
     return tree;
 }
 
-static void print_json(const cli_options *options, const cli_scene *scene, bool is_open)
+static void print_json(const cli_options *options, const cli_scene *scene, bool is_open,
+                       const fl_noise_split *noise)
 {
     json_t *line = json_pack("{s:s, s:o}", "scene", scene->path, "diagnostics", diagnostics_json(scene->diags));
     const fl_compiled *c = scene->compiled;
@@ -79,7 +81,9 @@ static void print_json(const cli_options *options, const cli_scene *scene, bool 
     }
     if (is_open && cli_has(options, CLI_OPT_PIXEL))
         json_object_set_new(line, "sample", tree_json(options, scene));
-    json_dumpf(line, stdout, JSON_COMPACT);
+    if (noise)
+        json_object_set_new(line, "noise", cli_noise_json(noise));
+    json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
     putchar('\n');
     json_decref(line);
 }
@@ -114,6 +118,8 @@ int cli_command_info(const cli_options *options)
         return cli_usage_error(CLI_INFO, "expected one scene, got %u", options->path_count);
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};
+    fl_noise_split split, *noise = NULL;
+    cli_catch_signals();
     bool ok = cli_scene_open(options, options->paths[0], &scene);
     if (ok && cli_has(options, CLI_OPT_PIXEL) &&
         (options->pixel[0] >= scene.params.width || options->pixel[1] >= scene.params.height)) {
@@ -123,9 +129,13 @@ int cli_command_info(const cli_options *options)
         fl_diags_deinit(&diags);
         return code;
     }
+    if (ok && cli_has(options, CLI_OPT_NOISE_SPLIT)) {
+        ok = cli_noise_measure(scene.compiled, &scene.params, scene.path, &split, &diags);
+        noise = ok ? &split : NULL;
+    }
     if (cli_has(options, CLI_OPT_JSON)) {
         scene.path = options->paths[0];
-        print_json(options, &scene, ok);
+        print_json(options, &scene, ok, noise);
     } else if (ok && cli_has(options, CLI_OPT_PIXEL)) {
         float rgb[3];
         char *text = tree_text(options, &scene, rgb);
@@ -134,6 +144,8 @@ int cli_command_info(const cli_options *options)
         free(text);
     } else if (ok) {
         print_text(&scene);
+        if (noise)
+            cli_noise_print(noise, "  ");
     }
     cli_print_diags(&diags);
     int code = cli_exit_code(&diags);

@@ -4,10 +4,11 @@
 
 #include "cli/commands.h"
 #include "cli/aov.h"
+#include "cli/noise.h"
 #include "io/image_file.h"
 
 /* One line for programs: the keys are binding (docs/cli.md). */
-static void print_json(const cli_scene *scene, const cli_picture *picture)
+static void print_json(const cli_scene *scene, const cli_picture *picture, const fl_noise_split *noise)
 {
     const fl_progress *p = &picture->progress;
     const fl_counts *c = &p->counts;
@@ -22,14 +23,17 @@ static void print_json(const cli_scene *scene, const cli_picture *picture)
     for (uint32_t i = 0; i < FL_COST_COUNT; i++)
         json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
-        "{s:s, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
+        "{s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
         scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)p->complete_samples,
+        "light_samples", (int)scene->params.light_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
         "first_sample_seconds", p->first_sample_seconds, "stage_seconds", costs, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
         (json_int_t)c->shadow_rays, "reflect", (json_int_t)c->reflect_rays, "refract", (json_int_t)c->refract_rays,
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
         (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "interrupted",
         (int)picture->was_interrupted, "film_sha256", picture->film_sha256);
+    if (line && noise)
+        json_object_set_new(line, "noise", cli_noise_json(noise));
     if (line) {
         json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
         putchar('\n');
@@ -88,10 +92,16 @@ int cli_command_render(const cli_options *options)
                 ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;
             if (options->aov && options->output_count)
                 ok = cli_aov_save(&scene, &picture, &aovs, options->outputs[0], &diags) && ok;
+            fl_noise_split split, *noise = NULL;
+            if (cli_has(options, CLI_OPT_NOISE_SPLIT) && !picture.was_interrupted &&
+                cli_noise_measure(scene.compiled, &scene.params, is_quiet ? NULL : scene.path, &split, &diags))
+                noise = &split;
             if (cli_has(options, CLI_OPT_JSON))
-                print_json(&scene, &picture);
+                print_json(&scene, &picture, noise);
             else if (!is_quiet)
                 print_summary(&picture);
+            if (noise && !is_quiet && !cli_has(options, CLI_OPT_JSON))
+                cli_noise_print(noise, "");
         }
     }
     cli_print_diags(&diags);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "cli/noise.h"
 #include "io/files.h"
 
 static volatile sig_atomic_t interrupted;
@@ -106,7 +107,7 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->camera.focus = o->focus;
     if (cli_has(o, CLI_OPT_EXPOSURE))
         params->camera.exposure_ev = o->exposure_ev;
-    if (cli_has(o, CLI_OPT_LIGHT_SAMPLES))
+    if (cli_has(o, CLI_OPT_LIGHT_SAMPLES) && o->light_samples != CLI_AUTO)
         params->light_samples = o->light_samples;
     if (cli_has(o, CLI_OPT_DEPTH))
         params->depth_limit = o->depth;
@@ -143,7 +144,10 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     if (out->state.scene_path)
         fl_saved_state_apply(&out->state, &out->params);
     apply_options(options, &out->params);
-    return fl_params_check(&out->params, out->diags);
+    if (!fl_params_check(&out->params, out->diags))
+        return false;
+    bool is_auto = cli_has(options, CLI_OPT_LIGHT_SAMPLES) && options->light_samples == CLI_AUTO;
+    return !is_auto || cli_noise_choose_light_samples(out->compiled, &out->params, out->diags);
 }
 
 void cli_scene_close(cli_scene *scene)

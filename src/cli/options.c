@@ -31,8 +31,9 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                       BIT(CLI_VIEW) | BIT(CLI_RENDER), "stop after this time"},
     [CLI_OPT_NOISE] = {"noise", 0, "RMSE", CLI_KIND_NUMBER, AT(noise), 1e-9, 1e3, NULL, RENDERING,
                        "stop when the predicted error is below this"},
-    [CLI_OPT_LIGHT_SAMPLES] = {"light-samples", 0, "N", CLI_KIND_COUNT, AT(light_samples), 1,
-                               FL_LIGHT_SAMPLES_MAX, NULL, LOOKING, "shadow rays per disk light and hit"},
+    [CLI_OPT_LIGHT_SAMPLES] = {"light-samples", 0, "N", CLI_KIND_COUNT_OR_AUTO, AT(light_samples), 1,
+                               FL_LIGHT_SAMPLES_MAX, NULL, LOOKING,
+                               "shadow rays per disk light and hit; auto: the measured optimum"},
     [CLI_OPT_DEPTH] = {"depth", 'd', "N", CLI_KIND_COUNT, AT(depth), 0, FL_DEPTH_MAX, NULL, LOOKING,
                        "bounces of reflected and refracted rays"},
     [CLI_OPT_APERTURE] = {"aperture", 'a', "R", CLI_KIND_NUMBER, AT(aperture), 0, 1e30, NULL, LOOKING,
@@ -74,6 +75,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                         "picture to write: .png .exr .tif .bmp ...; may be repeated"},
     [CLI_OPT_AOV] = {"aov", 0, "NAMES", CLI_KIND_TEXT, AT(aov), 0, 0, NULL, BIT(CLI_RENDER),
                      "what stands behind the pixels too: depth,normal,albedo,samples,error,cost as NAME.depth.exr ..."},
+    [CLI_OPT_NOISE_SPLIT] = {"noise-split", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_RENDER) | BIT(CLI_INFO),
+                             "measure where the noise comes from (edges, lens, each light) and which knob helps"},
     [CLI_OPT_UPDATE] = {"update", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_CHECK),
                         "write the golden pictures instead of comparing"},
     [CLI_OPT_REPORT] = {"report", 0, "DIR", CLI_KIND_TEXT, AT(report), 0, 0, NULL, BIT(CLI_CHECK),
@@ -161,6 +164,11 @@ static bool store(const cli_option *row, const char *text, cli_options *out)
         return true;
     case CLI_KIND_COUNT:
         return list_of_counts(row, text, ' ', 1, field);
+    case CLI_KIND_COUNT_OR_AUTO:
+        if (strcmp(text, "auto") != 0)
+            return list_of_counts(row, text, ' ', 1, field);
+        *(uint32_t *)field = CLI_AUTO;
+        return true;
     case CLI_KIND_NUMBER: {
         double value;
         if (!whole_number(text, &value) || !(value >= row->lowest && value <= row->highest))
@@ -213,8 +221,9 @@ static void explain_value(const cli_option *row, const char *text, char *message
             rest += used;
             room -= (size_t)used;
         }
-    } else if (row->kind == CLI_KIND_COUNT) {
-        snprintf(rest, room, "a whole number from %.10g to %.10g", row->lowest, row->highest);
+    } else if (row->kind == CLI_KIND_COUNT || row->kind == CLI_KIND_COUNT_OR_AUTO) {
+        snprintf(rest, room, "a whole number from %.10g to %.10g%s", row->lowest, row->highest,
+                 row->kind == CLI_KIND_COUNT ? "" : ", or auto");
     } else if (row->kind == CLI_KIND_NUMBER) {
         snprintf(rest, room, "a number from %g to %g", row->lowest, row->highest);
     } else {

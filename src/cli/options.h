@@ -19,6 +19,9 @@ enum {
 
 enum { CLI_OUTPUTS_MAX = 16 };
 
+/** A count that the program is to choose itself. */
+enum { CLI_AUTO = 0 };
+
 /** Every option's identity: its row in the table and its bit in cli_options.given. */
 typedef enum cli_option_id {
     CLI_OPT_SIZE,
@@ -46,6 +49,7 @@ typedef enum cli_option_id {
     CLI_OPT_LENIENT,
     CLI_OPT_OUTPUT,
     CLI_OPT_AOV,
+    CLI_OPT_NOISE_SPLIT,
     CLI_OPT_UPDATE,
     CLI_OPT_REPORT,
     CLI_OPT_OUT,

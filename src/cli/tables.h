@@ -10,6 +10,7 @@
 typedef enum cli_kind {
     CLI_KIND_FLAG,
     CLI_KIND_COUNT,  /**< uint32_t in [lowest, highest] */
+    CLI_KIND_COUNT_OR_AUTO, /**< likewise, or CLI_AUTO */
     CLI_KIND_NUMBER, /**< double in [lowest, highest] */
     CLI_KIND_NUMBER_OR_INF,
     CLI_KIND_SIZE,

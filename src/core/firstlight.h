@@ -20,6 +20,7 @@
 #include "core/image.h"
 #include "core/math64.h"
 #include "core/mesh.h"
+#include "core/noise.h"
 #include "core/number.h"
 #include "core/params.h"
 #include "core/parse.h"

@@ -61,8 +61,14 @@ FL_INLINE void fl_camera_generate(const fl_frame *frame, const fl_unit *unit, ui
                                   uint32_t count, fl_stage *stage)
 {
     const fl_frame_plan *plan = &frame->plan;
-    fl_sample_pass pass = fl_sample_pass_begin(frame->params.sampler, frame->params.seed,
-                                               FL_SET_CAMERA, unit->sample);
+    const fl_params *params = &frame->params;
+    fl_sample_pass pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
+                                               params->frozen & FL_FREEZE_PIXEL ? 0 : unit->sample);
+    fl_sample_pass lens_pass = pass;
+    bool is_apart = (params->frozen & (FL_FREEZE_PIXEL | FL_FREEZE_LENS)) != 0;
+    if (is_apart)
+        lens_pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
+                                         params->frozen & FL_FREEZE_LENS ? 0 : unit->sample);
     for (uint32_t i = 0; i < count; i++)
         stage->pixel[i] = fl_pixel_id(unit->x[begin + i], unit->y[begin + i]);
 
@@ -78,8 +84,9 @@ FL_INLINE void fl_camera_generate(const fl_frame *frame, const fl_unit *unit, ui
             jitter_y = fl_wf_sample(&pass, key, dimension++);
         }
         if (plan->samples_lens) {
-            fl_wf u = fl_wf_sample(&pass, key, dimension),
-                  v = fl_wf_sample(&pass, key, dimension + 1);
+            fl_wu lens_key = is_apart ? fl_wu_sample_key(&lens_pass, pixel) : key;
+            fl_wf u = fl_wf_sample(&lens_pass, lens_key, dimension),
+                  v = fl_wf_sample(&lens_pass, lens_key, dimension + 1);
             fl_wf_warp_aperture(&frame->opening, u, v, &lens_x, &lens_y);
         }
         fl_wf x = fl_wf_from_wi((fl_wi)(pixel & 0xffffu)), y = fl_wf_from_wi((fl_wi)(pixel >> 16));

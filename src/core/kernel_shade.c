@@ -166,7 +166,9 @@ FL_INLINE void shadow_append_rays(fl_shadow *out, fl_wm live, const fl_hits *hit
 static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sample, uint32_t j,
                   const fl_stage *stage, fl_shadow *out)
 {
-    uint32_t count = stage->rays.count, index = sample * from->samples + j;
+    uint32_t set_bit = stage->is_camera ? fl_freeze_light(from->index) : FL_FREEZE_DEEPER;
+    uint32_t number = frame->params.frozen & set_bit ? 0 : sample;
+    uint32_t count = stage->rays.count, index = number * from->samples + j;
     bool is_far = from->kind == FL_LIGHT_DIRECTIONAL;
     uint32_t camera_set = fl_set_light(frame->params.seed, FL_PATH_CAMERA, from->index);
     fl_sample_pass pass =

@@ -17,6 +17,22 @@ typedef enum fl_camera_model {
     FL_CAMERA_RAW_UP        /**< M12: likewise, and `up` is used as given. */
 } fl_camera_model;
 
+/** Sampling sets that stand still: all samples of a pixel draw the set's point number 0, so that
+ * what noise is left comes from the others (noise.h). Bits of fl_params.frozen; 0, the default,
+ * costs nothing. Lights beyond the last bit share it. */
+enum {
+    FL_FREEZE_PIXEL = 1u << 0,
+    FL_FREEZE_LENS = 1u << 1,
+    FL_FREEZE_DEEPER = 1u << 2, /**< Lights seen from reflected and refracted rays. */
+    FL_FREEZE_LIGHTS_MAX = 29
+};
+
+/** The bit of light number `index` (scene order) as seen from camera hits. */
+static inline uint32_t fl_freeze_light(uint32_t index)
+{
+    return 1u << (3 + fl_min_u32(index, FL_FREEZE_LIGHTS_MAX - 1));
+}
+
 /** Where the single sample of a pixel lies under --dialect-exact. */
 typedef enum fl_pixel_rule {
     FL_PIXEL_AREA,
@@ -30,8 +46,8 @@ typedef struct fl_exact_rules {
     fl_pixel_rule pixel;
     bool no_shadows, no_recursion, ungated_specular, no_normal_flip;
     bool black_back_faces; /**< M04 without its -shade_back: not even ambient light on them. */
-    bool course_cube;    /**< M12's cube lookup: back and down mirrored, no half-texel shift. */
-    bool truncate_bytes; /**< Output is (int)(c * 255) of linear values, no sRGB. */
+    bool course_cube;      /**< M12's cube lookup: back and down mirrored, no half-texel shift. */
+    bool truncate_bytes;   /**< Output is (int)(c * 255) of linear values, no sRGB. */
 } fl_exact_rules;
 
 typedef struct fl_params {
@@ -48,6 +64,7 @@ typedef struct fl_params {
     bool transparent_shadows;
     fl_sampler sampler;
     uint32_t seed;
+    uint32_t frozen; /**< For measurement: bits of FL_FREEZE_*. */
     fl_revolve_solver solver;
     fl_exact_rules exact;
     fl_vec3 background, ambient;

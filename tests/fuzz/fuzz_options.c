@@ -20,6 +20,10 @@ static void check_value(const cli_options *options, const cli_option *row)
         memcpy(&count, field, sizeof count);
         MUST(count >= row->lowest && count <= row->highest);
         break;
+    case CLI_KIND_COUNT_OR_AUTO:
+        memcpy(&count, field, sizeof count);
+        MUST(count == CLI_AUTO || (count >= row->lowest && count <= row->highest));
+        break;
     case CLI_KIND_NUMBER:
     case CLI_KIND_NUMBER_OR_INF:
         memcpy(&number, field, sizeof number);
