@@ -109,46 +109,56 @@ bool bench_mesh_sphere(uint32_t face_count, bench_mesh *out, fl_diags *diags)
     return true;
 }
 
-/* The scene has what compile needs, and nothing else. */
-fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
-                                fl_pool *pool, fl_diags *diags)
+fl_mesh *bench_mesh_create(const bench_mesh *mesh, fl_diags *diags)
 {
     fl_mesh *copy = fl_mesh_create();
-    if (!copy)
+    if (!copy) {
+        fl_out_of_memory(diags, "a mesh to measure on");
         return NULL;
+    }
     copy->position_count = mesh->position_count;
     copy->face_count = mesh->face_count;
     copy->positions = calloc(mesh->position_count, sizeof *copy->positions);
     copy->faces = calloc(mesh->face_count, sizeof *copy->faces);
-    fl_compiled *compiled = NULL;
-    if (copy->positions && copy->faces) {
-        for (uint32_t i = 0; i < mesh->position_count; i++) {
-            const float *p = mesh->position + 3 * (size_t)i;
-            copy->positions[i] = fl_v3((double)p[0], (double)p[1], (double)p[2]);
-        }
-        for (uint32_t f = 0; f < mesh->face_count; f++) {
-            fl_face *face = &copy->faces[f];
-            memset(face, 0xff, sizeof *face);
-            memcpy(face->position, mesh->index + 3 * (size_t)f, sizeof face->position);
-        }
-        fl_object object = {.kind = FL_OBJECT_MESH,
-                            .transform = FL_NONE,
-                            .as.mesh = {.mesh = 0, .normals = FL_NORMALS_FLAT}};
-        fl_material material = {.diffuse = {1, 1, 1}, .refraction_index = 1, .image = FL_NONE};
-        fl_scene_mesh row = {.path = mesh->name, .mesh = copy};
-        fl_scene scene = {.path = mesh->name,
-                          .objects = &object,
-                          .object_count = 1,
-                          .materials = &material,
-                          .material_count = 1,
-                          .meshes = &row,
-                          .mesh_count = 1};
-        for (int k = 0; k < FL_CUBE_FACES; k++)
-            scene.background.cube_image[k] = FL_NONE;
-        compiled = fl_compile(&scene, options, pool, diags);
-    } else {
+    if (!copy->positions || !copy->faces) {
+        fl_mesh_release(copy);
         fl_out_of_memory(diags, "a mesh to measure on");
+        return NULL;
     }
+    for (uint32_t i = 0; i < mesh->position_count; i++) {
+        const float *p = mesh->position + 3 * (size_t)i;
+        copy->positions[i] = fl_v3((double)p[0], (double)p[1], (double)p[2]);
+    }
+    for (uint32_t f = 0; f < mesh->face_count; f++) {
+        fl_face *face = &copy->faces[f];
+        memset(face, 0xff, sizeof *face);
+        memcpy(face->position, mesh->index + 3 * (size_t)f, sizeof face->position);
+    }
+    return copy;
+}
+
+/* The scene has what compile needs, and nothing else. */
+fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
+                                fl_pool *pool, fl_diags *diags)
+{
+    fl_mesh *copy = bench_mesh_create(mesh, diags);
+    if (!copy)
+        return NULL;
+    fl_object object = {.kind = FL_OBJECT_MESH,
+                        .transform = FL_NONE,
+                        .as.mesh = {.mesh = 0, .normals = FL_NORMALS_FLAT}};
+    fl_material material = {.diffuse = {1, 1, 1}, .refraction_index = 1, .image = FL_NONE};
+    fl_scene_mesh row = {.path = mesh->name, .mesh = copy};
+    fl_scene scene = {.path = mesh->name,
+                      .objects = &object,
+                      .object_count = 1,
+                      .materials = &material,
+                      .material_count = 1,
+                      .meshes = &row,
+                      .mesh_count = 1};
+    for (int k = 0; k < FL_CUBE_FACES; k++)
+        scene.background.cube_image[k] = FL_NONE;
+    fl_compiled *compiled = fl_compile(&scene, options, pool, diags);
     fl_mesh_release(copy);
     return compiled;
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
+#include <unistd.h>
 
 static double seconds_of(clockid_t clock)
 {
@@ -35,6 +36,20 @@ bench_figure bench_figure_of(double *values, uint32_t count)
     qsort(values, count, sizeof *values, ascending);
     double middle = 0.5 * (values[(count - 1) / 2] + values[count / 2]);
     return (bench_figure){middle, values[0], values[count - 1]};
+}
+
+void bench_show_progress(uint32_t done, uint32_t all, double begin)
+{
+    if (!isatty(STDERR_FILENO))
+        return;
+    double spent = bench_wall_seconds() - begin;
+    if (done == all)
+        fprintf(stderr, "\r\033[K");
+    else if (done == 0)
+        fprintf(stderr, "\r\033[K0 of %u", all);
+    else
+        fprintf(stderr, "\r\033[K%u of %u, %.0f s left", done, all, spent / done * (all - done));
+    fflush(stderr);
 }
 
 /* --- Rows ------------------------------------------------------------------------------------ */

@@ -35,6 +35,9 @@ bool bench_mesh_sphere(uint32_t face_count, bench_mesh *out, fl_diags *diags);
 
 void bench_mesh_deinit(bench_mesh *mesh);
 
+/** The mesh as scenes have it. The caller's reference; NULL after adding an error. */
+fl_mesh *bench_mesh_create(const bench_mesh *mesh, fl_diags *diags);
+
 /** Compile the mesh as a scene of its own; NULL after adding an error. */
 fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
                                 fl_pool *pool, fl_diags *diags);

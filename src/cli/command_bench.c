@@ -6,7 +6,7 @@
 #include "cli/bench_run.h"
 #include "cli/commands.h"
 
-enum { ROUNDS = 5, SIDE = 512, MILLION = 1000000 };
+enum { ROUNDS = 5, SIDE = 512, GROWTH_SIDE = 256, SOURCE_SIDE = 96, MILLION = 1000000 };
 
 static bool is_mesh_file(const char *path)
 {
@@ -54,14 +54,36 @@ static bool run_default(const cli_options *options, const bench_setup *setup)
     return ok;
 }
 
+/* The mesh alone is the one that our scene holds. */
+static bool run_source(const cli_options *options, const bench_setup *setup)
+{
+    cli_scene scene = {.diags = setup->diags};
+    bench_mesh mesh = {0};
+    bool ok = bench_mesh_load("assets/bunny_1k.obj", &mesh, setup->diags) &&
+              cli_scene_open(options, options->path_count ? options->paths[0] : "scenes/bunny.txt",
+                             &scene) &&
+              bench_source_run(setup, &scene, &mesh);
+    bench_mesh_deinit(&mesh);
+    cli_scene_close(&scene);
+    return ok;
+}
+
+static uint32_t side_of(const cli_options *options)
+{
+    if (cli_has(options, CLI_OPT_SIZE))
+        return (options->size[0] + 7) / 8 * 8;
+    if (cli_has(options, CLI_OPT_SOURCE))
+        return SOURCE_SIDE;
+    return cli_has(options, CLI_OPT_GROWTH) ? GROWTH_SIDE : SIDE;
+}
+
 int cli_command_bench(const cli_options *options)
 {
     cli_catch_signals();
     fl_diags diags = {0};
     bool is_json = cli_has(options, CLI_OPT_JSON);
     bench_setup setup = {.rounds = cli_has(options, CLI_OPT_REPEATS) ? options->repeats : ROUNDS,
-                         .side =
-                             cli_has(options, CLI_OPT_SIZE) ? (options->size[0] + 7) / 8 * 8 : SIDE,
+                         .side = side_of(options),
                          .compile = {.accel = (fl_accel)options->accel,
                                      .has_isa = cli_has(options, CLI_OPT_ISA),
                                      .octree_height = options->octree_height},
@@ -76,9 +98,15 @@ int cli_command_bench(const cli_options *options)
     if (options->against)
         ok = ok &&
              (setup.peer = bench_peer_load(options->against, &setup.peer_config, &diags)) != NULL;
-    if (ok && options->path_count == 0)
+    bool is_special = cli_has(options, CLI_OPT_SOURCE) || cli_has(options, CLI_OPT_GROWTH);
+    if (ok && cli_has(options, CLI_OPT_SOURCE))
+        ok = run_source(options, &setup);
+    if (ok && cli_has(options, CLI_OPT_GROWTH))
+        ok = bench_growth_run(&setup);
+    if (ok && options->path_count == 0 && !is_special)
         ok = run_default(options, &setup);
-    for (uint32_t i = 0; ok && i < options->path_count && !cli_was_interrupted(); i++)
+    for (uint32_t i = 0; ok && !is_special && i < options->path_count && !cli_was_interrupted();
+         i++)
         ok = run_path(options, &setup, options->paths[i]);
     if (is_json) {
         json_t *line = json_pack("{s:O}", "rows", setup.rows);

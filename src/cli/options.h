@@ -57,6 +57,8 @@ typedef enum cli_option_id {
     CLI_OPT_REPEATS,
     CLI_OPT_SWEEP,
     CLI_OPT_AGAINST,
+    CLI_OPT_GROWTH,
+    CLI_OPT_SOURCE,
     CLI_OPT_RECORD,
     CLI_OPT_PIXEL,
     CLI_OPT_PLATFORM,
