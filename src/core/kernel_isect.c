@@ -6,7 +6,7 @@
 #include "core/kernel_isect_octree.h"
 #include "core/kernel_isect_shapes.h"
 #include "core/kernel_isect_stream.h"
-#include "core/resolve.h"
+#include "core/kernel_resolve.h"
 
 /* --- Objects with a transform, and meshes ---------------------------------------------------- */
 
@@ -93,19 +93,18 @@ static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
         return;
     bundle b = bundle_load(c, i);
     b = bundle_transform(instance->to_object, &b);
-    fl_wf t;
     if (instance->kind == FL_OBJECT_REVOLUTION) {
-        t = hit_revolution(j, &g->revolutions, instance->index, &b, &no_shift, fl_wf_load(c->t + i),
-                           is_any);
-    } else {
-        j->context->counts.primitive_tests += lane_count(alive);
-        if (instance->kind == FL_OBJECT_PLANE)
-            t = hit_plane(&g->planes, instance->index, &b, own);
-        else if (instance->kind == FL_OBJECT_SPHERE)
-            t = hit_sphere(&g->spheres, instance->index, &b, own);
-        else
-            t = hit_patch(&g->patches, instance->index, &b, own);
+        meet_revolution(j, c, i, &b, instance->index, instance->object, &no_shift, is_any);
+        return;
     }
+    fl_wf t;
+    j->context->counts.primitive_tests += lane_count(alive);
+    if (instance->kind == FL_OBJECT_PLANE)
+        t = hit_plane(&g->planes, instance->index, &b, own);
+    else if (instance->kind == FL_OBJECT_SPHERE)
+        t = hit_sphere(&g->spheres, instance->index, &b, own);
+    else
+        t = hit_patch(&g->patches, instance->index, &b, own);
     chunk_accept(c, i, t, instance->object, is_any);
 }
 
@@ -137,9 +136,8 @@ FL_INLINE void meet_baked(const job *j, chunk *c, uint32_t i, const bundle *b, f
         object = g->patches.object[k];
         t = hit_patch(&g->patches, k, b, chunk_starts_on(c, i, object));
     } else {
-        object = g->revolutions.object[k];
-        t = hit_revolution(j, &g->revolutions, k, b, &g->revolutions.shift, fl_wf_load(c->t + i),
-                           is_any);
+        meet_revolution(j, c, i, b, k, g->revolutions.object[k], &g->revolutions.shift, is_any);
+        return;
     }
     chunk_accept(c, i, t, object, is_any);
 }
@@ -276,6 +274,8 @@ static void trace_nearest(const fl_geometry *geometry, const fl_rays *rays, fl_h
             return;
         chunk c = chunk_of(rays, first, out_hits->t + first, out_hits->object + first,
                            out_hits->prim + first);
+        if (out_hits->root)
+            c.root = out_hits->root + first;
         meet_geometry(&j, &c, false);
         for (uint32_t i = 0; i < c.count; i += FL_W) {
             fl_wf t = fl_wf_load(c.t + i);
@@ -306,4 +306,5 @@ static void trace_any(const fl_geometry *geometry, const fl_rays *rays, uint32_t
     }
 }
 
-const fl_isect_kernels FL_ISA_NAME(fl_isect_kernels) = {trace_nearest, trace_any, fl_resolve};
+const fl_isect_kernels FL_ISA_NAME(fl_isect_kernels) = {trace_nearest, trace_any,
+                                                        FL_ISA_NAME(fl_resolve)};

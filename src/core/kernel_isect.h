@@ -22,6 +22,7 @@ typedef struct chunk {
     const float *o[3], *d[3];
     float *t; /**< Nearest so far, at first t_max; for any-hit -1 once blocked. */
     uint32_t *object, *prim;
+    fl_revolve_hit *root; /**< NULL: not kept. */
     const uint32_t *source_object, *source_prim;
     uint32_t count; /**< Rounded up to a multiple of FL_W. */
 } chunk;
@@ -83,22 +84,23 @@ FL_INLINE fl_wm chunk_starts_on(const chunk *c, uint32_t i, uint32_t object)
 }
 
 /** Enter hits of prim 0 of `object` at t where 0 < t, t < t_max and (t, object) is least. NaN is no
- * hit. */
-FL_INLINE void chunk_accept(chunk *c, uint32_t i, fl_wf t, uint32_t object, const bool is_any)
+ * hit. Returns the lanes entered. */
+FL_INLINE fl_wm chunk_accept(chunk *c, uint32_t i, fl_wf t, uint32_t object, const bool is_any)
 {
     fl_wf best = fl_wf_load(c->t + i);
     fl_wm closer = (t > 0.0f) & (t < best);
     if (!is_any)
         closer |= (t == best) & (t > 0.0f) & (fl_wm)(fl_wu_load(c->object + i) > object);
     if (!fl_wm_any(closer))
-        return;
+        return closer;
     if (is_any) {
         fl_wf_store(c->t + i, fl_wf_select(closer, fl_wf_set(-1.0f), best));
-        return;
+        return closer;
     }
     fl_wf_store(c->t + i, fl_wf_select(closer, t, best));
     fl_wu_store(c->object + i, fl_wu_select(closer, fl_wu_set(object), fl_wu_load(c->object + i)));
     fl_wu_store(c->prim + i, fl_wu_select(closer, fl_wu_set(0), fl_wu_load(c->prim + i)));
+    return closer;
 }
 
 FL_INLINE slabs slabs_of(const bundle *b, float origin_pad)

@@ -70,25 +70,27 @@ static double below_float(float t_max)
     return bits & 1u ? middle : middle * (1.0 + 0x1p-52); /* A tie goes to the even float. */
 }
 
-static fl_wf hit_revolution(const job *j, const fl_revolutions *r, uint32_t k, const bundle *b,
-                            const fl_vec3 *shift, fl_wf best, const bool is_any)
+/* Surface number k, which is `object`, against the bundle at i of the chunk. */
+static void meet_revolution(const job *j, chunk *c, uint32_t i, const bundle *b, uint32_t k,
+                            uint32_t object, const fl_vec3 *shift, const bool is_any)
 {
-    fl_wf t = fl_wf_set(-1.0f), near;
+    const fl_revolutions *r = &j->geometry->revolutions;
+    fl_wf t = fl_wf_set(-1.0f), near, best = fl_wf_load(c->t + i);
     slabs s = slabs_of(b, FL_ORIGIN_PAD);
     fl_wm meets = slabs_meet(&s, r->bounds[k].lo, r->bounds[k].hi, best, &near);
     uint32_t lanes = fl_wm_bits(meets & (best > 0.0f));
     if (!lanes)
-        return t;
+        return;
     fl_revolve_packet rays;
-    for (int i = 0; i < FL_W; i++) {
-        rays.ox[i] = (double)b->o[0][i] + shift->x;
-        rays.oy[i] = (double)b->o[1][i] + shift->y;
-        rays.oz[i] = (double)b->o[2][i] + shift->z;
-        rays.dx[i] = (double)b->d[0][i];
-        rays.dy[i] = (double)b->d[1][i];
-        rays.dz[i] = (double)b->d[2][i];
-        rays.u_min[i] = 0.0;
-        rays.u_max[i] = is_any ? below_float(best[i]) : (double)best[i] * (1.0 + 0x1p-22);
+    for (int l = 0; l < FL_W; l++) {
+        rays.ox[l] = (double)b->o[0][l] + shift->x;
+        rays.oy[l] = (double)b->o[1][l] + shift->y;
+        rays.oz[l] = (double)b->o[2][l] + shift->z;
+        rays.dx[l] = (double)b->d[0][l];
+        rays.dy[l] = (double)b->d[1][l];
+        rays.dz[l] = (double)b->d[2][l];
+        rays.u_min[l] = 0.0;
+        rays.u_max[l] = is_any ? below_float(best[l]) : (double)best[l] * (1.0 + 0x1p-22);
     }
     fl_revolve_solver solver = j->context->solver;
     fl_revolve_hit hits[FL_REVOLVE_PACKET];
@@ -96,10 +98,15 @@ static fl_wf hit_revolution(const job *j, const fl_revolutions *r, uint32_t k, c
     lanes = is_any ? fl_revolve_any8(r->profile[k], &rays, lanes, solver)
                    : fl_revolve_nearest8(r->profile[k], &rays, lanes, solver, hits);
     for (; lanes; lanes &= lanes - 1) {
-        int i = __builtin_ctz(lanes);
-        t[i] = is_any ? 0x1p-126f : (float)hits[i].u; /* Where something blocks does not matter. */
+        int lane = __builtin_ctz(lanes);
+        /* Where something blocks does not matter. */
+        t[lane] = is_any ? 0x1p-126f : (float)hits[lane].u;
     }
-    return t;
+    fl_wm closer = chunk_accept(c, i, t, object, is_any);
+    if (is_any || !c->root)
+        return;
+    for (lanes = fl_wm_bits(closer); lanes; lanes &= lanes - 1)
+        c->root[i + (uint32_t)__builtin_ctz(lanes)] = hits[__builtin_ctz(lanes)];
 }
 
 #endif

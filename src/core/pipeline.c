@@ -455,7 +455,9 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
         .lap = fl_ticks(),
     };
     fl_unit_result *result = &workspace->result;
-    *out_of_memory = frame->params.transparent_shadows && !fl_workspace_reserve_through(workspace);
+    *out_of_memory =
+        (frame->params.transparent_shadows && !fl_workspace_reserve_through(workspace)) ||
+        (frame->scene->needs & FL_NEED_REVOLUTIONS && !fl_workspace_reserve_roots(workspace));
     if (*out_of_memory || fl_is_cancelled(&pipe.context))
         return false;
     clear3((fl_array3){result->r, result->g, result->b}, unit->count);

@@ -51,7 +51,7 @@ static fl_rays make_rays(maker *m)
 
 static fl_hits make_hits(maker *m)
 {
-    return (fl_hits){make_floats(m), make_words(m), make_words(m)};
+    return (fl_hits){.t = make_floats(m), .object = make_words(m), .prim = make_words(m)};
 }
 
 static fl_surface make_surface(maker *m)
@@ -128,6 +128,16 @@ bool fl_workspace_reserve_through(fl_workspace *workspace)
         return false;
     workspace->end = end;
     return true;
+}
+
+bool fl_workspace_reserve_roots(fl_workspace *workspace)
+{
+    fl_hits *hits = &workspace->stage.hits;
+    if (!hits->root)
+        hits->root =
+            fl_arena_alloc(&workspace->arena, FL_STREAM_RAYS + FL_STREAM_SLACK, sizeof *hits->root);
+    hits->root_at = workspace->stage.entry;
+    return hits->root;
 }
 
 void fl_workspace_destroy(fl_workspace *workspace)

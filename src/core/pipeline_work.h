@@ -74,6 +74,9 @@ struct fl_workspace {
 /** Arrays for transparent shadows, once. False: out of memory. */
 bool fl_workspace_reserve_through(fl_workspace *workspace);
 
+/** The array for roots of surfaces of revolution, once. False: out of memory. */
+bool fl_workspace_reserve_roots(fl_workspace *workspace);
+
 /** One run of the pipeline: what its stages share. */
 typedef struct fl_pipe {
     const fl_frame *frame;

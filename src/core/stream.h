@@ -23,6 +23,9 @@ typedef struct fl_hits {
     float *t;
     uint32_t *object; /**< FL_NONE: nothing was hit; t is then +inf. */
     uint32_t *prim;
+    fl_revolve_hit *root;    /**< Where surfaces of revolution were hit, by number of the ray in the
+                                  search; NULL: not kept, `resolve` finds it again. */
+    const uint32_t *root_at; /**< For `resolve`: that number, where the rays moved since. NULL: they did not. */
 } fl_hits;
 
 /** The solved surface at each hit; entries of missed rays are unspecified but finite. */
