@@ -204,6 +204,26 @@ void vw_words_title(const vw_state *state, const fl_progress *progress, const ch
                  floor(100.0 * vw_words_done(state, progress)), name);
 }
 
+/* docs/strips/NAME.log makes docs/strips/NAME.jpg (tools/make-strips). */
+static void add_strips(buffer *b)
+{
+    static const struct {
+        const char *name, *caption;
+    } strips[] = {
+        {"focus",
+         "Pulling focus: what is sharp to a pixel is green; last the rangefinder, where the "
+         "two colours meet in what is sharp."},
+        {"compare", "A picture is pinned (V) and the lens opened; wipe at the cursor and signed "
+                    "difference (Shift+V)."},
+        {"views", "Behind the picture: depth (F3), normals (F4), cost (F8), blur (F9)."},
+    };
+    add(b, "\n## In pictures\n\nEach strip is made by a log of input, which `firstlight replay` "
+           "plays (tools/make-strips).\n");
+    for (size_t i = 0; i < FL_COUNT_OF(strips); i++)
+        add(b, "\n%s ([log](strips/%s.log))\n\n![%s](strips/%s.jpg)\n", strips[i].caption,
+            strips[i].name, strips[i].name, strips[i].name);
+}
+
 size_t vw_controls_markdown(char *out, size_t out_bytes)
 {
     buffer b = {out, out_bytes, 0};
@@ -239,5 +259,6 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
         "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
         "saved.\n");
+    add_strips(&b);
     return b.length;
 }
