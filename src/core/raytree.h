@@ -73,7 +73,7 @@ void fl_raytree_deinit(fl_raytree *tree);
  * sizes; FL_NONE: all are 0. */
 uint32_t fl_raytree_heaviest(const fl_raytree *tree);
 
-/** The tree as text, deepest branches indented most. `is_short`: a line a ray, about 60 columns,
+/** The tree as text, deepest branches indented most. `is_short`: a line a ray, about 70 columns,
  * for the screen; else everything, with digits enough to tell floats apart. Length as snprintf. */
 size_t fl_raytree_text(const fl_frame *frame, const fl_raytree *tree, bool is_short, char *out,
                        size_t out_bytes);

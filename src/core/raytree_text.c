@@ -160,7 +160,7 @@ static void put_node_short(writer *w, uint32_t index)
     put(w, "%*s%s: %s, adds", 2 * (int)node->level, "", fl_ray_kind_names[node->kind], name);
     put_sum(w, node);
     if (node->light_count)
-        put(w, ", %u of %u shadow rays clear", lit, node->light_count);
+        put(w, ", lights %u/%u", lit, node->light_count);
     put(w, "\n");
 }
 

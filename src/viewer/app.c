@@ -224,6 +224,10 @@ static void apply(app *a, vw_dirty dirty, bool is_resize)
         print_camera(a);
     if (dirty & VW_DIRTY_PASTE)
         ask_paste(a);
+    if ((dirty & VW_DIRTY_RAYS) && a->session.insight.rays_text && !a->options->is_quiet) {
+        fputs(a->session.insight.rays_text, stdout);
+        fflush(stdout);
+    }
     if (dirty & VW_DIRTY_QUIT)
         a->has_quit = true;
     a->needs_draw |= dirty != VW_DIRTY_NONE;
@@ -321,7 +325,10 @@ static bool draw(app *a, fl_diags *diags)
     a->needs_draw = false;
     char notes[NOTES_BYTES];
     vw_session_notes(session, notes, sizeof notes);
-    vw_texts texts = {.notes = notes, .error = session->error_text};
+    vw_board board;
+    bool has_board = vw_session_board(session, &board);
+    vw_texts texts = {
+        .notes = notes, .error = session->error_text, .board = has_board ? &board : NULL};
     if (!vw_view_draw(a->view, &session->state, &session->progress, &texts, diags))
         return false;
     a->platform->ops->swap(a->platform);

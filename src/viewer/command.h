@@ -35,13 +35,14 @@ typedef enum vw_group {
     VW_GROUP_MOVE,
     VW_GROUP_LENS,
     VW_GROUP_PICTURE,
+    VW_GROUP_UNDERSTAND,
     VW_GROUP_PROGRAM,
     VW_GROUP_COUNT
 } vw_group;
 
 extern const char *const vw_group_titles[VW_GROUP_COUNT];
 
-enum { VW_BINDINGS_MAX = 9, VW_VALUE_MAX = 48 };
+enum { VW_BINDINGS_MAX = 10, VW_VALUE_MAX = 48 };
 
 typedef struct vw_command {
     const char *name;

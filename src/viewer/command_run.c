@@ -337,6 +337,11 @@ vw_dirty vw_run_escape(vw_state *state, vw_amount amount)
         state->help_page = 0;
         return VW_DIRTY_WINDOW;
     }
+    if (state->panel != VW_PANEL_NONE || state->stress != VW_STRESS_OFF) {
+        state->panel = VW_PANEL_NONE;
+        state->stress = VW_STRESS_OFF;
+        return VW_DIRTY_SHOW;
+    }
     if (state->now_ms < state->quit_armed_ms)
         return VW_DIRTY_QUIT;
     state->quit_armed_ms = state->now_ms + VW_QUIT_MS;

@@ -4,7 +4,8 @@
 
 #include "viewer/command_run.h"
 
-const char *const vw_group_titles[VW_GROUP_COUNT] = {"Move", "Lens", "Picture", "Program"};
+const char *const vw_group_titles[VW_GROUP_COUNT] = {"Move", "Lens", "Picture", "Understand",
+                                                     "Program"};
 
 /* clang-format off */
 #define CTRL GLFW_MOD_CONTROL
@@ -94,18 +95,28 @@ const vw_command vw_commands[] = {
      "brighter, darker by a quarter stop", vw_run_exposure, vw_value_exposure},
     {"pause", VW_GROUP_PICTURE, {KEY(0, P, 1)}, false, LIMITS,
      "pause, resume", vw_run_pause, vw_value_pause},
-    {"layer", VW_GROUP_PICTURE,
-     {KEY(0, F2, 0), KEY(0, F3, 1), KEY(0, F4, 2), KEY(0, F5, 3), KEY(0, F6, 4), KEY(0, F7, 5),
-      KEY(0, F8, 6), KEY(0, F9, 7), KEY(0, F10, 8)}, false, VW_DIRTY_SHOW,
-     "the picture, or what is behind it", vw_run_layer, vw_value_layer},
-    {"inspect", VW_GROUP_PICTURE, {KEY(0, I, 1)}, false, WINDOW,
-     "what is under the cursor", vw_run_inspect, vw_value_inspect},
     {"pin", VW_GROUP_PICTURE, {KEY(0, V, 1)}, false, VW_DIRTY_PIN,
      "pin the picture to compare with", vw_run_pin, NULL},
     {"compare", VW_GROUP_PICTURE, {KEY(SHIFT, V, 1)}, false, VW_DIRTY_SHOW,
      "wipe at the cursor; difference", vw_run_compare, vw_value_compare},
     {"flip", VW_GROUP_PICTURE, {WHILE(SPACE)}, false, VW_DIRTY_SHOW,
      "while held: the pinned picture", vw_run_flip, NULL},
+
+    {"layer", VW_GROUP_UNDERSTAND,
+     {KEY(0, F2, 0), KEY(0, F3, 1), KEY(0, F4, 2), KEY(0, F5, 3), KEY(0, F6, 4), KEY(0, F7, 5),
+      KEY(0, F8, 6), KEY(0, F9, 7), KEY(0, F10, 8),
+      KEY(SHIFT, F8, 9)}, false, VW_DIRTY_SHOW,
+     "the picture, or what is behind it", vw_run_layer, vw_value_layer},
+    {"inspect", VW_GROUP_UNDERSTAND, {KEY(0, I, 1)}, false, WINDOW,
+     "what is under the cursor", vw_run_inspect, vw_value_inspect},
+    {"rays", VW_GROUP_UNDERSTAND, {CLICK(CTRL, LEFT)}, false, VW_DIRTY_RAYS | WINDOW,
+     "print the rays of a sample there; again: the next", vw_run_rays, NULL},
+    {"needs", VW_GROUP_UNDERSTAND, {KEY(0, M, 1)}, false, VW_DIRTY_SHOW,
+     "meter: what the scene needs, what that costs", vw_run_needs, vw_value_needs},
+    {"trade", VW_GROUP_UNDERSTAND, {KEY(0, T, 1)}, false, VW_DIRTY_SHOW,
+     "trade: error against time, other settings", vw_run_trade, vw_value_trade},
+    {"stress", VW_GROUP_UNDERSTAND, {KEY(0, J, 1), KEY(SHIFT, J, -1)}, false, VW_DIRTY_SHOW,
+     "stress lens: what changes at extremes", vw_run_stress, vw_value_stress},
 
     {"help", VW_GROUP_PROGRAM, {KEY(0, F1, 1), KEY(0, H, 1)}, false, WINDOW,
      "this help, next page", vw_run_help, NULL},
@@ -115,8 +126,9 @@ const vw_command vw_commands[] = {
      "save the picture", vw_run_snapshot, NULL},
     {"reload", VW_GROUP_PROGRAM, {KEY(CTRL, R, 1)}, false, VW_DIRTY_SCENE,
      "read the scene again (done when it is saved)", vw_run_reload, NULL},
-    {"escape", VW_GROUP_PROGRAM, {KEY(0, ESCAPE, 1)}, false, WINDOW | VW_DIRTY_QUIT,
-     "close help; twice: quit", vw_run_escape, NULL},
+    {"escape", VW_GROUP_PROGRAM, {KEY(0, ESCAPE, 1)}, false,
+     WINDOW | VW_DIRTY_QUIT | VW_DIRTY_SHOW,
+     "close help or board; twice: quit", vw_run_escape, NULL},
     {"quit", VW_GROUP_PROGRAM, {KEY(CTRL, Q, 1)}, false, VW_DIRTY_QUIT,
      "quit", vw_run_quit, NULL},
 };

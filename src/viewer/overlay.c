@@ -124,10 +124,9 @@ void vw_overlay_begin(vw_overlay *overlay)
     overlay->vertex_count = 0;
 }
 
-/* A rectangle with the texels (u0, v0) to (u1, v1); u0 > u1 mirrors. Beyond QUADS_MAX nothing is
- * added. */
-static void quad(vw_overlay *overlay, double x, double y, double width, double height,
-                 const double uv[4], vw_ink ink)
+/* Corners left upper, right upper, left lower, right lower with the texels (u0, v0) to (u1, v1);
+ * u0 > u1 mirrors. Beyond QUADS_MAX nothing is added. */
+static void corners(vw_overlay *overlay, const double at[4][2], const double uv[4], vw_ink ink)
 {
     if (overlay->vertex_count + 6 > 6 * QUADS_MAX)
         return;
@@ -135,8 +134,8 @@ static void quad(vw_overlay *overlay, double x, double y, double width, double h
     for (int i = 0; i < 6; i++) {
         int right = order[i] & 1, low = order[i] >> 1;
         vertex *out = &overlay->quads[overlay->vertex_count++];
-        out->x = (float)(x + (right ? width : 0.0));
-        out->y = (float)(y + (low ? height : 0.0));
+        out->x = (float)at[order[i]][0];
+        out->y = (float)at[order[i]][1];
         out->u = (float)uv[right ? 2 : 0];
         out->v = (float)uv[low ? 3 : 1];
         out->ink[0] = (uint8_t)(ink.r * ink.a / 255);
@@ -144,6 +143,27 @@ static void quad(vw_overlay *overlay, double x, double y, double width, double h
         out->ink[2] = (uint8_t)(ink.b * ink.a / 255);
         out->ink[3] = ink.a;
     }
+}
+
+static void quad(vw_overlay *overlay, double x, double y, double width, double height,
+                 const double uv[4], vw_ink ink)
+{
+    const double at[4][2] = {{x, y}, {x + width, y}, {x, y + height}, {x + width, y + height}};
+    corners(overlay, at, uv, ink);
+}
+
+void vw_overlay_line(vw_overlay *overlay, double x0, double y0, double x1, double y1, double thick,
+                     vw_ink ink)
+{
+    const vw_glyph *s = &overlay->atlas.solid;
+    const double solid[4] = {s->x + 2.0, s->y + 2.0, s->x + 2.0, s->y + 2.0};
+    double dx = x1 - x0, dy = y1 - y0, length = sqrt(dx * dx + dy * dy);
+    if (!(length > 0.0))
+        return;
+    double u = -dy / length * thick / 2.0, v = dx / length * thick / 2.0;
+    const double at[4][2] = {
+        {x0 + u, y0 + v}, {x1 + u, y1 + v}, {x0 - u, y0 - v}, {x1 - u, y1 - v}};
+    corners(overlay, at, solid, ink);
 }
 
 void vw_overlay_panel(vw_overlay *overlay, double x, double y, double width, double height,

@@ -44,6 +44,9 @@ void vw_overlay_begin(vw_overlay *overlay);
 /** A rectangle with rounded corners. */
 void vw_overlay_panel(vw_overlay *overlay, double x, double y, double width, double height,
                       double radius, vw_ink ink);
+/** A straight line from (x0, y0) to (x1, y1), `thick` pixels wide. */
+void vw_overlay_line(vw_overlay *overlay, double x0, double y0, double x1, double y1, double thick,
+                     vw_ink ink);
 /** One line of text whose cell begins at (x, y); returns the x behind it. */
 double vw_overlay_text(vw_overlay *overlay, vw_face face, double x, double y, vw_ink ink,
                        const char *text);

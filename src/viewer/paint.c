@@ -113,12 +113,28 @@ static void paint_object(const float *value, uint8_t *rgba)
             0.25 + (h >> 16 & 255) / 340.0);
 }
 
+/* By what adds most: the surface itself yellow, a mirror's blue, glass's green; darker the deeper
+ * it lies. */
+static void paint_branch(const float *value, uint8_t *rgba)
+{
+    static const double colors[4][3] = {
+        {0.0, 0.0, 0.0}, {0.95, 0.82, 0.45}, {0.35, 0.55, 1.0}, {0.35, 0.9, 0.45}};
+    int kind = (int)fl_clamp((double)value[0], 0.0, 3.0);
+    double level = (double)value[1], dim = level > 1.0 ? 1.0 / (0.5 + 0.5 * level) : 1.0;
+    put(rgba, colors[kind][0] * dim, colors[kind][1] * dim, colors[kind][2] * dim);
+}
+
 void vw_paint_layer(const vw_paint *paint, vw_layer layer, const float *values, size_t pixels,
                     uint8_t *out_rgba)
 {
     fl_tonemap plain = {0};
     if (layer == VW_LAYER_ALBEDO || layer == VW_LAYER_BEAUTY) {
         fl_tonemap_rgba8(&plain, values, pixels, out_rgba);
+        return;
+    }
+    if (layer == VW_LAYER_BRANCH) {
+        for (size_t i = 0; i < pixels; i++)
+            paint_branch(values + 3 * i, out_rgba + 4 * i);
         return;
     }
     bool is_single = layer == VW_LAYER_SAMPLES || layer == VW_LAYER_ERROR;
@@ -158,6 +174,22 @@ void vw_paint_band(const vw_paint *paint, const float *depths, size_t pixels, ui
         p[0] = (uint8_t)(p[0] / 3);
         p[1] = (uint8_t)(p[1] / 3 + 168);
         p[2] = (uint8_t)(p[2] / 3 + 52);
+    }
+}
+
+void vw_paint_changes(const float *changes, size_t pixels, uint8_t *rgba)
+{
+    for (size_t i = 0; i < pixels; i++) {
+        uint8_t *p = rgba + 4 * i;
+        double change = (double)changes[i];
+        uint8_t grey = (uint8_t)((p[0] * 2 + p[1] * 5 + p[2]) / 8 / 3);
+        p[0] = p[1] = p[2] = grey;
+        if (isinf(change))
+            put(p, 0.2, 1.0, 0.4);
+        else if (change > VW_VISIBLE_CHANGE)
+            heat(1.0 + 0.5 * fl_d_log2(change) / fl_d_log2(1.0 / VW_VISIBLE_CHANGE), p);
+        else if (change > 0.0)
+            put(p, grey / 255.0 + 0.08, grey / 255.0, grey / 255.0 + 0.16);
     }
 }
 

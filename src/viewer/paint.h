@@ -33,6 +33,13 @@ void vw_paint_layer(const vw_paint *paint, vw_layer layer, const float *values, 
 /** Tint what is blurred by less than a pixel in `rgba`; `depths`: 3 floats a pixel. */
 void vw_paint_band(const vw_paint *paint, const float *depths, size_t pixels, uint8_t *rgba);
 
+/** Half a step of an 8-bit picture: a change below is not seen. */
+#define VW_VISIBLE_CHANGE (0.5 / 255.0)
+
+/** Dim the picture and colour what changed: dark violet where it cannot be seen, orange to white
+ * where it can; green: one of the two values is not a number. */
+void vw_paint_changes(const float *changes, size_t pixels, uint8_t *rgba);
+
 /** Present minus pinned about middle grey, and how far they differ. */
 typedef struct vw_difference {
     double rmse, largest;

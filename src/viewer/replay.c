@@ -97,7 +97,10 @@ static bool show(replay *r, bool *out_is_new)
                        session->progress.height);
     char notes[1024];
     vw_session_notes(session, notes, sizeof notes);
-    vw_texts texts = {.notes = notes, .error = session->error_text};
+    vw_board board;
+    bool has_board = vw_session_board(session, &board);
+    vw_texts texts = {
+        .notes = notes, .error = session->error_text, .board = has_board ? &board : NULL};
     if (!vw_view_draw(r->view, &session->state, &session->progress, &texts, r->diags))
         return false;
     r->platform->ops->swap(r->platform);
@@ -244,6 +247,7 @@ static bool render_exactly(replay *r, uint32_t samples)
     }
     while (!fl_render_wait(session->render, 0.25)) {
         fl_render_progress(session->render, &session->progress);
+        vw_insight_note(session);
         if (has_failed(r) || is_interrupted(r))
             return false;
     }

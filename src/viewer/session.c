@@ -81,6 +81,7 @@ void vw_session_close(vw_session *session)
 {
     fl_render_destroy(session->render);
     vw_show_deinit(&session->show);
+    vw_insight_deinit(&session->insight);
     scene_deinit(&session->scene);
     free(session->rgba);
     free(session->error_text);
@@ -157,6 +158,7 @@ bool vw_session_refresh(vw_session *session, fl_diags *diags)
     if (!session->show.is_asked)
         vw_show_ask(session, diags);
     is_changed |= vw_show_take(session);
+    is_changed |= vw_insight_follow(session, false, diags);
     is_changed |= session->show.is_stale;
     session->show.is_stale = false;
     /* Before the first picture there is nothing to compose. */

@@ -7,8 +7,10 @@
 #define VW_SESSION_H
 
 #include "viewer/bookmarks.h"
+#include "viewer/board.h"
 #include "viewer/history.h"
 #include "viewer/input.h"
+#include "viewer/insight.h"
 #include "viewer/show.h"
 #include "viewer/viewer.h"
 
@@ -29,6 +31,7 @@ typedef struct vw_session {
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */
     vw_show show;
+    vw_insight insight;
     void (*notify)(void *context); /**< As given to vw_session_start. */
     void *notify_context;
     char *error_text; /**< What went wrong last, as users read it, or NULL. Owned. */
@@ -83,6 +86,9 @@ void vw_session_settle(vw_session *session, fl_diags *diags);
  * under the cursor. Empty: none. */
 void vw_session_notes(vw_session *session, char *out, size_t out_bytes);
 
+/** What the board at the right says. False: there is none. */
+bool vw_session_board(vw_session *session, vw_board *out);
+
 /** Write the picture of `rgb` (linear, progress.width x progress.height) to `path`; 8-bit files are
  * tone-mapped. */
 bool vw_session_save(const vw_session *session, const char *path, const float *rgb,
@@ -103,5 +109,15 @@ void vw_show_ask(vw_session *session, fl_diags *diags);
 /** Take what the guide has; true: it is to be composed. */
 bool vw_show_take(vw_session *session);
 bool vw_show_compose(vw_session *session, fl_diags *diags);
+void vw_insight_deinit(vw_insight *insight);
+/** Note the error that the picture has come to, at powers of two. */
+void vw_insight_note(vw_session *session);
+/** Ask for measurements that are due, urgent ones at once, and take what came; true: something did.
+ */
+bool vw_insight_follow(vw_session *session, bool is_urgent, fl_diags *diags);
+/** The answer to the present question of that kind is there. */
+bool vw_insight_has(const vw_insight *insight, vw_lab_kind kind);
+/** Trace the tree of rays that the state names. */
+vw_dirty vw_insight_rays(vw_session *session, fl_diags *diags);
 
 #endif

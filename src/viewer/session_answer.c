@@ -144,6 +144,8 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         all |= store(session, diags);
     if (dirty & VW_DIRTY_PIN)
         all |= vw_show_toggle_pin(session, diags);
+    if (dirty & VW_DIRTY_RAYS)
+        all |= vw_insight_rays(session, diags);
     /* Before undo: what the events so far did is a step of its own. */
     const vw_input *input = &session->input;
     bool is_gesture = input->last_kind == VW_BIND_HOLD || input->last_kind == VW_BIND_DRAG ||

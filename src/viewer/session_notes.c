@@ -51,10 +51,28 @@ static void layer_line(const vw_session *session, lines *l)
              show->high > 0.0 ? "%s: up to %.2g, in squares of 16 pixels"
                               : "%s: known from 4 samples on",
              name, show->high);
+    else if (state->layer == VW_LAYER_BRANCH)
+        line(l, "%s: most light from here (yellow), a mirror (blue), glass (green)", name);
     else if (state->layer == VW_LAYER_BLUR)
         line(l, "%s: white below 1 pixel; orange nearer, blue farther", name);
     else
         line(l, "%s", name);
+}
+
+static void stress_line(const vw_session *session, lines *l)
+{
+    const vw_insight *insight = &session->insight;
+    const vw_lab_answer *answer = &insight->answer;
+    const char *name = vw_stress_names[session->state.stress];
+    if (!vw_insight_has(insight, VW_LAB_STRESS)) {
+        line(l, "stress, %s: being rendered", name);
+    } else if (answer->error[0]) {
+        line(l, "stress, %s: %s", name, answer->error);
+    } else {
+        line(l, "stress, %s: %u of %u pixels changed, at most by %.3g", name, insight->changed,
+             answer->width * answer->height, insight->largest);
+        line(l, "%u differ at all; sample 0, the same points", insight->touched);
+    }
 }
 
 static void sharp_line(const vw_session *session, lines *l, uint32_t height_px)
@@ -69,8 +87,6 @@ static void sharp_line(const vw_session *session, lines *l, uint32_t height_px)
 
 static void pick_lines(vw_session *session, lines *l, const fl_params *params, const fl_pick *pick)
 {
-    static const char *const kinds[FL_OBJECT_KIND_COUNT] = {
-        "sphere", "plane", "square", "disk", "triangle", "mesh", "revolution"};
     if (!pick->is_hit) {
         line(l, "nothing");
         return;
@@ -78,13 +94,9 @@ static void pick_lines(vw_session *session, lines *l, const fl_params *params, c
     char a[32];
     line(l, "depth %s  blur %.2g px", distance(pick->depth, a),
          fabs(vw_blur_px(&params->camera, params->height, pick->depth)));
-    const fl_scene *scene = session->scene.scene;
-    const char *kind = scene && pick->object < scene->object_count
-                           ? kinds[scene->objects[pick->object].kind]
-                           : "object";
-    const char *file = pick->loc.file ? strrchr(pick->loc.file, '/') : NULL;
-    file = file ? file + 1 : pick->loc.file ? pick->loc.file : "";
-    line(l, "%s %u, %s:%u", kind, pick->object + 1, file, pick->loc.line);
+    char name[160];
+    fl_object_text(session->scene.compiled, pick->object, name, sizeof name);
+    line(l, "%s", name);
 }
 
 static void pixel_lines(vw_session *session, lines *l)
@@ -120,6 +132,8 @@ void vw_session_notes(vw_session *session, char *out, size_t out_bytes)
     vw_state_params(state, &session->scene.params, &params);
     if (state->layer != VW_LAYER_BEAUTY)
         layer_line(session, &l);
+    if (state->stress != VW_STRESS_OFF)
+        stress_line(session, &l);
     if (state->assist != VW_ASSIST_OFF || state->layer == VW_LAYER_BLUR)
         sharp_line(session, &l, params.height);
     if (show->pin.rgb && show->has_difference)

@@ -15,7 +15,8 @@ static int wanted_kind(const vw_state *state)
                                               [VW_LAYER_ERROR] = -1,
                                               [VW_LAYER_COST] = FL_AOV_COST,
                                               [VW_LAYER_BLUR] = FL_AOV_DEPTH,
-                                              [VW_LAYER_OBJECTS] = FL_AOV_OBJECT};
+                                              [VW_LAYER_OBJECTS] = FL_AOV_OBJECT,
+                                              [VW_LAYER_BRANCH] = FL_AOV_BRANCH};
     if (state->layer != VW_LAYER_BEAUTY)
         return kinds[state->layer];
     if (state->look.camera.aperture == 0.0 || state->assist == VW_ASSIST_OFF)
@@ -223,6 +224,14 @@ static bool compose_comparison(vw_session *session, bool has_layer, size_t pixel
     return true;
 }
 
+static bool has_stress(const vw_session *session)
+{
+    const vw_lab_answer *answer = &session->insight.answer;
+    return session->state.stress != VW_STRESS_OFF &&
+           vw_insight_has(&session->insight, VW_LAB_STRESS) && answer->changes &&
+           answer->width == session->progress.width && answer->height == session->progress.height;
+}
+
 bool vw_show_compose(vw_session *session, fl_diags *diags)
 {
     vw_show *show = &session->show;
@@ -231,13 +240,19 @@ bool vw_show_compose(vw_session *session, fl_diags *diags)
     if (pixels == 0 || pixels * 4 > session->rgba_bytes)
         return true;
     bool has_layer = session->state.layer != VW_LAYER_BEAUTY || wanted_kind(&session->state) >= 0;
-    if (!has_layer && !has_pin(session))
+    if (!has_layer && !has_pin(session) && !has_stress(session))
         return true;
     if (!reserve(show, pixels))
         return fl_out_of_memory(diags, "the view");
     show->is_composed = has_layer && compose_layer(session, pixels);
     if (has_pin(session))
         show->is_composed = compose_comparison(session, show->is_composed, pixels);
+    if (has_stress(session)) {
+        if (!show->is_composed)
+            memcpy(show->rgba, session->rgba, pixels * 4);
+        vw_paint_changes(session->insight.answer.changes, pixels, show->rgba);
+        show->is_composed = true;
+    }
     return true;
 }
 
@@ -251,5 +266,9 @@ void vw_session_settle(vw_session *session, fl_diags *diags)
     vw_show_ask(session, diags);
     if (session->show.wish_kind >= 0 && session->show.guide)
         vw_guide_wait(session->show.guide);
+    fl_render_progress(session->render, &session->progress);
+    vw_insight_follow(session, true, diags);
+    if (session->insight.lab)
+        vw_lab_wait(session->insight.lab);
     session->show.is_stale = true;
 }

@@ -16,7 +16,7 @@ enum {
     VW_MESSAGE_MS = 2500, /**< How long a message stays. */
     VW_QUIT_MS = 3000,    /**< Within which the second Esc quits. */
     VW_SLOT_COUNT = 9,    /**< Bookmarks. */
-    VW_HELP_PAGES = 2
+    VW_HELP_PAGES = 3
 };
 #define VW_FOV_MIN_DEG     0.01
 #define VW_FOV_MAX_DEG     179.0
@@ -39,6 +39,7 @@ typedef enum vw_layer {
     VW_LAYER_COST,
     VW_LAYER_BLUR, /**< Circle of confusion. */
     VW_LAYER_OBJECTS,
+    VW_LAYER_BRANCH, /**< Which kind of ray adds most. */
     VW_LAYER_COUNT
 } vw_layer;
 extern const char *const vw_layer_names[VW_LAYER_COUNT];
@@ -50,6 +51,29 @@ typedef enum vw_assist {
     VW_ASSIST_RANGEFINDER, /**< Pinhole views from the lens's left edge in red, right in cyan. */
     VW_ASSIST_COUNT
 } vw_assist;
+
+/** The board of figures at the right. */
+typedef enum vw_panel {
+    VW_PANEL_NONE,
+    VW_PANEL_RAYS,  /**< The tree of rays of one sample. */
+    VW_PANEL_NEEDS, /**< What the scene uses, and what that costs. */
+    VW_PANEL_TRADE, /**< Error against time, and what other settings would buy. */
+    VW_PANEL_COUNT
+} vw_panel;
+
+/** Numbers at their ends: the picture is held against one that should be, or should not be, the
+ * same. */
+typedef enum vw_stress {
+    VW_STRESS_OFF,
+    VW_STRESS_SMALL,   /**< The whole scene a thousandth of its size. */
+    VW_STRESS_LARGE,   /**< A million times its size. */
+    VW_STRESS_PINHOLE, /**< Aperture 0. */
+    VW_STRESS_WIDE,    /**< Aperture as large as the scene. */
+    VW_STRESS_NEAR,    /**< Focus at a millionth of the scene's size. */
+    VW_STRESS_FAR,     /**< Focus at 10^9 times. */
+    VW_STRESS_COUNT
+} vw_stress;
+extern const char *const vw_stress_names[VW_STRESS_COUNT];
 
 /** How the pinned picture is set against the present one. */
 typedef enum vw_compare {
@@ -78,7 +102,8 @@ typedef enum vw_dirty {
     VW_DIRTY_RECALL = 1 << 13, /**< The camera of bookmark `slot`. */
     VW_DIRTY_STORE = 1 << 14,
     VW_DIRTY_PASTE = 1 << 15, /**< The camera that the clipboard holds. */
-    VW_DIRTY_PIN = 1 << 16    /**< Keep or drop the picture as it is now. */
+    VW_DIRTY_PIN = 1 << 16,   /**< Keep or drop the picture as it is now. */
+    VW_DIRTY_RAYS = 1 << 17   /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
 } vw_dirty;
 
 /** What decides the picture: everything that R puts back. */
@@ -112,7 +137,10 @@ typedef struct vw_state {
     vw_compare compare;
     bool is_flipped; /**< The pinned picture alone, while Space is down. */
     bool is_inspecting;
-    double cursor_x, cursor_y; /**< Picture pixels. */
+    vw_panel panel;
+    vw_stress stress;
+    uint32_t rays_x, rays_y, rays_sample; /**< Picture pixels. */
+    double cursor_x, cursor_y;            /**< Picture pixels. */
     /* Window. */
     uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
     bool is_hud_shown, is_paused;

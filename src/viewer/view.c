@@ -138,9 +138,10 @@ static void copy_line(const char *from, const char *end, uint32_t columns, char 
     out[length] = 0;
 }
 
-/* Lines of text in a panel at the top; wide: across the window, else as wide as the text. */
+/* Lines of text in a panel at the top; wide: across the window, else as wide as the text. Sets
+ * where the panel ends. */
 static void draw_lines(vw_view *view, const vw_state *state, const char *error, bool is_wide,
-                       vw_ink ink, double scale)
+                       vw_ink ink, double scale, double out_end[2])
 {
     vw_cell cell = vw_overlay_cell(view->overlay, VW_FACE_NORMAL);
     double margin = floor(8.0 * scale), pad = floor(10.0 * scale);
@@ -159,6 +160,8 @@ static void draw_lines(vw_view *view, const vw_state *state, const char *error, 
     double width =
         is_wide ? (double)state->width - 2.0 * margin : (double)widest * cell.width + 2.0 * pad;
     vw_overlay_panel(view->overlay, margin, margin, width, height, 6.0 * scale, ink);
+    out_end[0] = margin + width;
+    out_end[1] = margin + height;
     double y = margin + floor(7.0 * scale);
     for (const char *line = error; line; y += cell.height) {
         char text[512];
@@ -167,6 +170,17 @@ static void draw_lines(vw_view *view, const vw_state *state, const char *error, 
         vw_overlay_text(view->overlay, VW_FACE_NORMAL, margin + pad, y, bright_ink, text);
         line = end ? end + 1 : NULL;
     }
+}
+
+/* At the right; below what stands at the left when there is no room beside it. */
+static void draw_board(vw_view *view, const vw_state *state, const vw_board *board,
+                       const double notes_end[2], double bottom, double scale)
+{
+    double margin = floor(8.0 * scale), right = (double)state->width - margin, top = margin;
+    double width = fl_min(vw_board_width(board, view->overlay, scale), right - margin);
+    if (right - width < notes_end[0] + margin && notes_end[1] > 0.0)
+        top = notes_end[1] + margin;
+    vw_board_draw(board, view->overlay, right, top, width, bottom - margin, scale);
 }
 
 bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progress,
@@ -187,16 +201,18 @@ bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progr
     if (!vw_overlay_set_sizes(view->overlay, sizes, diags))
         return false;
     vw_overlay_begin(view->overlay);
-    double bottom = (double)state->height;
+    double bottom = (double)state->height, notes_end[2] = {0.0, 0.0};
     /* The help shows the same values, and would lie over the line. */
     if (state->is_hud_shown && state->help_page == 0)
         bottom = draw_status(view, state, progress, scale);
     if (state->help_page > 0)
         vw_help_draw(&view->help, view->overlay, state);
     if (texts->notes && texts->notes[0] && !texts->error && state->help_page == 0)
-        draw_lines(view, state, texts->notes, false, panel_ink, scale);
+        draw_lines(view, state, texts->notes, false, panel_ink, scale, notes_end);
+    if (texts->board && !texts->error && state->help_page == 0)
+        draw_board(view, state, texts->board, notes_end, bottom, scale);
     if (texts->error)
-        draw_lines(view, state, texts->error, true, alarm_panel_ink, scale);
+        draw_lines(view, state, texts->error, true, alarm_panel_ink, scale, notes_end);
     const char *message = vw_state_message(state);
     if (message)
         draw_message(view, state, message, bottom, scale);

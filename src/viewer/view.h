@@ -5,6 +5,7 @@
 #ifndef VW_VIEW_H
 #define VW_VIEW_H
 
+#include "viewer/board.h"
 #include "viewer/platform.h"
 #include "viewer/state.h"
 
@@ -19,8 +20,9 @@ void vw_view_upload(vw_view *view, const uint8_t *rgba, uint32_t width, uint32_t
 
 /** Text of several lines, or NULL. */
 typedef struct vw_texts {
-    const char *notes; /**< In the upper left corner. */
-    const char *error; /**< Above all else. */
+    const char *notes;     /**< In the upper left corner. */
+    const char *error;     /**< Above all else. */
+    const vw_board *board; /**< At the right, or NULL. */
 } vw_texts;
 
 /** Draw into the back buffer, without swapping. */

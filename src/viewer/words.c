@@ -126,6 +126,42 @@ static uint64_t ray_count(const fl_counts *counts)
     return counts->camera_rays + counts->shadow_rays + counts->reflect_rays + counts->refract_rays;
 }
 
+/* The next rounder error than the present one: 1, 2 or 5 of a power of ten. */
+static double next_goal(double rmse)
+{
+    double goal = 1.0;
+    static const double steps[3] = {2.0, 2.5, 2.0};
+    for (int i = 0; goal > 0.7 * rmse && i < 60; i++)
+        goal /= steps[i % 3];
+    return goal;
+}
+
+/* "0.41 % ± 0.08", and when it will be at the next round number. */
+static void error_items(const fl_progress *progress, vw_status *out, uint32_t *count)
+{
+    const fl_error_estimate *error = &progress->error;
+    vw_status *s = item(out, count, "error");
+    if (!error->is_known) {
+        snprintf(s->value, sizeof s->value, "n/a");
+        return;
+    }
+    char value[24], when[3][24];
+    vw_words_percent(error->rmse, value);
+    snprintf(s->value, sizeof s->value, "%s \302\261 %.1g", value,
+             50.0 * (error->high - error->low));
+    fl_error_forecast forecast;
+    double goal = next_goal(error->rmse), second = progress->seconds / progress->mean_samples;
+    if (progress->state == FL_RENDER_DONE || !(progress->mean_samples > 0.0) ||
+        !fl_error_predict(error, goal, &forecast))
+        return;
+    const double samples[3] = {forecast.samples, forecast.low, forecast.high};
+    for (int i = 0; i < 3; i++)
+        vw_words_duration(fl_max(samples[i] - progress->mean_samples, 0.0) * second, when[i]);
+    vw_words_percent(goal, value);
+    s = item(out, count, value);
+    snprintf(s->value, sizeof s->value, "in %s (%s\342\200\223%s)", when[0], when[1], when[2]);
+}
+
 static void work_items(const vw_state *state, const fl_progress *progress, vw_status *out,
                        uint32_t *count)
 {
@@ -143,11 +179,7 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
     s = item(out, count, "time");
     snprintf(s->value, sizeof s->value, progress->seconds < 100.0 ? "%.1f s" : "%.0f s",
              progress->seconds);
-    s = item(out, count, "error");
-    if (progress->error.is_known)
-        snprintf(s->value, sizeof s->value, "%.2g", progress->error.rmse);
-    else
-        snprintf(s->value, sizeof s->value, "n/a");
+    error_items(progress, out, count);
     s = item(out, count, "");
     double rate = progress->seconds > 0.0
                       ? (double)ray_count(&progress->counts) / progress->seconds * 1e-6
@@ -180,6 +212,23 @@ uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
     }
     FL_ASSERT(count <= VW_STATUS_MAX);
     return count;
+}
+
+void vw_words_percent(double value, char out[24])
+{
+    snprintf(out, 24, 100.0 * value >= 10.0 ? "%.0f %%" : "%.2g %%", 100.0 * value);
+}
+
+void vw_words_duration(double seconds, char out[24])
+{
+    if (seconds < 9.95)
+        snprintf(out, 24, "%.1f s", seconds);
+    else if (seconds < 99.5)
+        snprintf(out, 24, "%.0f s", seconds);
+    else if (seconds < 99.5 * 60.0)
+        snprintf(out, 24, "%.0f min", seconds / 60.0);
+    else
+        snprintf(out, 24, seconds < 3600.0 * 1e4 ? "%.3g h" : "never", seconds / 3600.0);
 }
 
 double vw_words_done(const vw_state *state, const fl_progress *progress)
@@ -250,9 +299,12 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "estimated error, in squares of 16 pixels",
         "rays that one sample costs",
         "circle of confusion: white is sharp to a pixel, orange too near, blue too far",
-        "a colour for each object"};
+        "a colour for each object",
+        "which kind of ray adds most: the surface's own yellow, a mirror's blue, glass's green, "
+        "deeper is darker"};
     for (int layer = 0; layer < VW_LAYER_COUNT; layer++)
-        add(&b, "| `F%d` | %s: %s |\n", layer + 2, vw_layer_names[layer], layers[layer]);
+        add(&b, "| `%s%d` | %s: %s |\n", layer == VW_LAYER_BRANCH ? "Shift+F" : "F",
+            layer == VW_LAYER_BRANCH ? 8 : layer + 2, vw_layer_names[layer], layers[layer]);
     add(&b,
         "\n## Files\n\nBookmarks are kept beside the scene as `SCENE.views`, which is scene text "
         "(`View 1 { ... }`); views\nof the scene itself stand in the slots that it leaves empty. "

@@ -9,7 +9,7 @@
 #include "viewer/command.h"
 #include "viewer/platform.h"
 
-enum { VW_KEYS_MAX = 64, VW_STATUS_MAX = 16 };
+enum { VW_KEYS_MAX = 64, VW_STATUS_MAX = 20 };
 
 /** The inputs of a command as people read them ("[ ]  Shift+[ ]", "left drag"). Keys are named as
  * `platform` says the user's keyboard prints them; NULL: as on a US keyboard. */
@@ -17,13 +17,18 @@ void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW
 
 /** One item of the status line: a dim label (may be empty) and a bright value. */
 typedef struct vw_status {
-    char label[16], value[40];
+    char label[24], value[80];
     bool is_alarm;
 } vw_status;
 
 /** The status line; returns how many items were written. */
 uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
                          vw_status out[VW_STATUS_MAX]);
+
+/** A part of white as people read it: "0.41 %". */
+void vw_words_percent(double value, char out[24]);
+/** "0.3 s", "14 s", "3 min", "2.1 h". */
+void vw_words_duration(double seconds, char out[24]);
 
 /** Part of the work that is done, 0 to 1. */
 double vw_words_done(const vw_state *state, const fl_progress *progress);

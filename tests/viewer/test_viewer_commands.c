@@ -41,7 +41,8 @@ enum {
     SLOT = 1 << 15,
     SHOWN = 1 << 16,
     RACK = 1 << 17,
-    OTHER = 1 << 18
+    PANEL = 1 << 18,
+    OTHER = 1 << 19
 };
 
 static fl_params params_of_test(void)
@@ -108,6 +109,10 @@ static int changed_groups(const vw_state *a, const vw_state *b)
                       memcmp(a->rack_focus, b->rack_focus, sizeof a->rack_focus) == 0
                   ? 0
                   : RACK;
+    groups |= a->panel == b->panel && a->stress == b->stress && a->rays_x == b->rays_x &&
+                      a->rays_y == b->rays_y && a->rays_sample == b->rays_sample
+                  ? 0
+                  : PANEL;
     bool is_rest_same = x->projection == y->projection && x->blades == y->blades &&
                         x->blade_rotation_deg == y->blade_rotation_deg && a->width == b->width &&
                         a->height == b->height && a->picture_width == b->picture_width &&
@@ -157,11 +162,15 @@ static const struct {
     {"depth", DEPTH, VW_DIRTY_CAMERA},
     {"exposure", EXPOSURE, VW_DIRTY_TONEMAP},
     {"pause", PAUSE, VW_DIRTY_LIMITS},
-    {"layer", SHOWN, VW_DIRTY_SHOW},
-    {"inspect", SHOWN, VW_DIRTY_WINDOW},
     {"pin", 0, VW_DIRTY_PIN},
     {"compare", SHOWN | MESSAGE, VW_DIRTY_SHOW},
     {"flip", SHOWN, VW_DIRTY_SHOW},
+    {"layer", SHOWN, VW_DIRTY_SHOW},
+    {"inspect", SHOWN, VW_DIRTY_WINDOW},
+    {"rays", PANEL, VW_DIRTY_RAYS},
+    {"needs", PANEL, VW_DIRTY_SHOW},
+    {"trade", PANEL, VW_DIRTY_SHOW},
+    {"stress", PANEL | MESSAGE, VW_DIRTY_SHOW},
     {"help", WINDOW, VW_DIRTY_WINDOW},
     {"hud", WINDOW, VW_DIRTY_WINDOW},
     {"snapshot", 0, VW_DIRTY_SNAPSHOT},
@@ -308,8 +317,8 @@ static void reset_undoes_everything(void **unused)
     run(&state, "reset", 1.0);
     assert_memory_equal(&state.look.camera.center, &start.look.camera.center, sizeof(fl_vec3));
     int left = changed_groups(&start, &state);
-    assert_int_equal(left & ~(WINDOW | PAUSE | PICK | MESSAGE | ARMED | MODE | SLOT | SHOWN | RACK),
-                     0);
+    assert_int_equal(
+        left & ~(WINDOW | PAUSE | PICK | MESSAGE | ARMED | MODE | SLOT | SHOWN | RACK | PANEL), 0);
     assert_int_equal(state.mode, VW_MODE_FLY);
 }
 

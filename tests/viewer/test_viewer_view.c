@@ -203,10 +203,11 @@ static void tiny_windows_and_odd_text_are_survived(void **unused)
     s.state.help_page = 1;
     s.state.is_hud_shown = true;
     vw_state_say(&s.state, "%s", "\xff\xc3 \xf0\x9f\x99\x82 \xe2\x88");
-    assert_true(
-        vw_view_draw(s.view, &s.state, &s.progress, &(vw_texts){"a\n", "\n\n\xff\n"}, &s.diags));
+    assert_true(vw_view_draw(s.view, &s.state, &s.progress,
+                             &(vw_texts){.notes = "a\n", .error = "\n\n\xff\n"}, &s.diags));
     s.state.help_page = 0;
-    assert_true(vw_view_draw(s.view, &s.state, &s.progress, &(vw_texts){"\n", ""}, &s.diags));
+    assert_true(vw_view_draw(s.view, &s.state, &s.progress, &(vw_texts){.notes = "\n", .error = ""},
+                             &s.diags));
     close_scene(&s);
 }
 

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What explains the picture: the tree of rays of a click, the meter of needs, the trade curve and
+ * the stress lens. Counts are exact and asserted; times never are.
+ */
+#include "viewer_kit.h"
+
+#include <math.h>
+
+/* Render to exactly that many samples and have everything that is wanted measured. */
+static void settle(vw_session *session, uint32_t samples)
+{
+    fl_diags diags = {0};
+    session->exact_samples = samples;
+    vw_session_set_limits(session);
+    assert_true(vw_session_restart(session, &diags));
+    assert_true(fl_render_wait(session->render, -1.0));
+    vw_session_refresh(session, &diags);
+    vw_session_settle(session, &diags);
+    vw_session_refresh(session, &diags);
+    assert_int_equal(diags.error_count, 0);
+}
+
+static void click(vw_session *session, double x, double y, int mods, uint64_t ms)
+{
+    vw_event move = {.kind = VW_EVENT_CURSOR, .x = x, .y = y};
+    vw_event press = {.kind = VW_EVENT_BUTTON,
+                      .code = GLFW_MOUSE_BUTTON_LEFT,
+                      .action = GLFW_PRESS,
+                      .mods = mods};
+    vw_event release = press;
+    release.action = GLFW_RELEASE;
+    send(session, &move, ms);
+    send(session, &press, ms);
+    send(session, &release, ms);
+}
+
+static const vw_board_row *row_named(const vw_board *board, const char *label)
+{
+    for (uint32_t i = 0; i < board->row_count; i++)
+        if (strcmp(board->rows[i].label, label) == 0)
+            return &board->rows[i];
+    return NULL;
+}
+
+static const vw_trial *trial_named(const vw_session *session, const char *name)
+{
+    const vw_lab_answer *answer = &session->insight.answer;
+    for (uint32_t i = 0; i < answer->trial_count; i++)
+        if (strcmp(answer->trials[i].name, name) == 0)
+            return &answer->trials[i];
+    fail_msg("there is no trial '%s'", name);
+    return NULL;
+}
+
+static void a_click_prints_the_rays_of_a_sample(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    vw_board board;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    settle(&session, 3);
+    assert_false(vw_session_board(&session, &board));
+    float film[3], sum[3] = {0.0f, 0.0f, 0.0f};
+    uint32_t samples;
+    assert_true(fl_render_pixel(session.render, 60, 30, film, &samples));
+    /* Three clicks are the pixel's three samples: their mean is the film's value. */
+    double total[3] = {0.0, 0.0, 0.0};
+    for (uint32_t i = 0; i < 3; i++) {
+        click(&session, 60.5, 30.25, GLFW_MOD_CONTROL, 100 * i);
+        uint32_t sample;
+        assert_int_equal(sscanf(session.insight.rays_text, "pixel 60 30, sample %u: %g %g %g,",
+                                &sample, &sum[0], &sum[1], &sum[2]),
+                         4);
+        assert_int_equal(sample, i);
+        for (int c = 0; c < 3; c++)
+            total[c] += (double)sum[c];
+    }
+    for (int c = 0; c < 3; c++)
+        assert_true((float)(total[c] / 3.0) == film[c]);
+    assert_non_null(strstr(session.insight.rays_text, "hits sphere 3, three.txt:"));
+    assert_non_null(strstr(session.insight.rays_text, "reflect weight"));
+    assert_true(vw_session_board(&session, &board));
+    assert_non_null(strstr(board.title, "pixel 60 30, sample 2"));
+    assert_non_null(strstr(board.rows[0].label, "camera: sphere 3, three.txt:"));
+    /* Another pixel begins anew; outside nothing happens; Esc closes. */
+    click(&session, 10.5, 30.25, GLFW_MOD_CONTROL, 500);
+    assert_int_equal(session.state.rays_sample, 0);
+    click(&session, -10.0, 30.25, GLFW_MOD_CONTROL, 600);
+    assert_int_equal(session.state.rays_x, 10);
+    tap(&session, GLFW_KEY_ESCAPE, 0, 700);
+    assert_false(vw_session_board(&session, &board));
+    assert_null(session.insight.lab);
+    vw_session_close(&session);
+}
+
+static void the_meter_says_what_the_scene_needs(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    vw_board board;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    tap(&session, GLFW_KEY_M, 0, 100);
+    settle(&session, 4);
+    assert_true(vw_session_board(&session, &board));
+    assert_non_null(strstr(board.rows[0].label, "uses spheres, patches,"));
+    assert_non_null(row_named(&board, "nearest"));
+    double shares = 0.0;
+    for (uint32_t i = 0; i < board.row_count; i++)
+        for (int k = 0; k < FL_COST_COUNT; k++)
+            if (strcmp(board.rows[i].label, fl_cost_names[k]) == 0)
+                shares += board.rows[i].bar;
+    assert_true(shares > 0.9 && shares < 1.001);
+    /* The picture is small enough to be measured whole: 16 samples of all pixels. */
+    const vw_trial *now = trial_named(&session, "now");
+    assert_int_equal(session.insight.answer.trial_count, 5);
+    assert_true(trial_named(&session, "all lights")->rays <
+                trial_named(&session, "shadows")->rays + 1e-9);
+    assert_true(trial_named(&session, "mirrors and glass")->rays < now->rays);
+    assert_true(trial_named(&session, "lens")->change > 0.0);
+    assert_non_null(row_named(&board, "shadows"));
+    assert_non_null(row_named(&board, "mirrors and glass"));
+    /* Rays are those of a render of the same pixels, to the last one. */
+    double rays = now->rays;
+    fl_params params;
+    fl_diags diags = {0};
+    vw_state_params(&session.state, &session.scene.params, &params);
+    params.seed = fl_lowbias32(params.seed + 2);
+    fl_render_set_limits(session.render, &(fl_render_limits){.samples = 16});
+    assert_true(fl_render_restart(session.render, session.scene.compiled, &params, &diags));
+    assert_true(fl_render_wait(session.render, -1.0));
+    fl_progress progress;
+    fl_render_progress(session.render, &progress);
+    const fl_counts *c = &progress.counts;
+    uint64_t all = c->camera_rays + c->shadow_rays + c->reflect_rays + c->refract_rays;
+    assert_true(rays == (double)all / (96.0 * 64.0 * 16.0));
+    vw_session_close(&session);
+}
+
+static void the_trade_curve_shows_where_the_picture_is(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    vw_board board;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    tap(&session, GLFW_KEY_T, 0, 100);
+    settle(&session, 16);
+    assert_true(vw_session_board(&session, &board));
+    assert_true(board.has_plot && board.plot.count >= 1 && board.plot.has_forecast);
+    uint32_t last = board.plot.count - 1;
+    assert_true(board.plot.y[last] == 100.0 * session.progress.error.rmse);
+    assert_non_null(row_named(&board, "half that"));
+    /* Twice the shadow rays, and less noise; no more bounces, and another picture. */
+    const vw_trial *now = trial_named(&session, "now");
+    const vw_trial *more = trial_named(&session, "light samples 2");
+    assert_true(more->rays > now->rays && more->rmse < now->rmse);
+    assert_true(trial_named(&session, "depth 4")->rays <= now->rays);
+    assert_true(trial_named(&session, "depth 6")->rays >= now->rays);
+    assert_true(trial_named(&session, "depth 4")->change > 0.0);
+    assert_true(now->change == 0.0);
+    assert_non_null(row_named(&board, "light samples 2"));
+    /* Measured: two seeds, no prediction. Both say the same within their own spread. */
+    double ratio = now->rmse / session.progress.error.rmse;
+    assert_true(ratio > 0.5 && ratio < 2.0);
+    /* The same question has the same answer. */
+    vw_trial before = *now;
+    tap(&session, GLFW_KEY_T, 0, 200);
+    settle(&session, 16);
+    tap(&session, GLFW_KEY_T, 0, 300);
+    settle(&session, 16);
+    now = trial_named(&session, "now");
+    assert_true(now->rays == before.rays && now->rmse == before.rmse);
+    vw_session_close(&session);
+}
+
+static void the_stress_lens_finds_what_changes(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    char notes[1024];
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    for (int stress = 1; stress < VW_STRESS_COUNT; stress++) {
+        tap(&session, GLFW_KEY_J, 0, 100 * (uint64_t)stress);
+        settle(&session, 4);
+        const vw_insight *insight = &session.insight;
+        assert_int_equal(session.state.stress, stress);
+        assert_string_equal(insight->answer.error, "");
+        assert_int_equal(insight->answer.width, 96);
+        assert_true(isfinite(insight->largest));
+        vw_session_notes(&session, notes, sizeof notes);
+        char want[160];
+        snprintf(want, sizeof want, "stress, %s: %u of 6144 pixels changed, at most by",
+                 vw_stress_names[stress], insight->changed);
+        if (!strstr(notes, want))
+            fail_msg("expected '%s' in '%s'", want, notes);
+        /* Another size is the same picture but for rounding; another lens is another picture. */
+        if (stress == VW_STRESS_SMALL || stress == VW_STRESS_LARGE)
+            assert_true(insight->changed < 6144 / 100);
+        else
+            assert_true(insight->changed > 100);
+        /* What is shown is painted, what is saved is not. */
+        assert_true(vw_session_shown(&session) != session.rgba);
+    }
+    tap(&session, GLFW_KEY_J, 0, 2000);
+    assert_int_equal(session.state.stress, VW_STRESS_OFF);
+    settle(&session, 4);
+    assert_true(vw_session_shown(&session) == session.rgba);
+    tap(&session, GLFW_KEY_J, GLFW_MOD_SHIFT, 2100);
+    assert_int_equal(session.state.stress, VW_STRESS_COUNT - 1);
+    vw_session_close(&session);
+}
+
+static void nobody_waits_for_measurements(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    fl_diags diags = {0};
+    for (int i = 0; i < 12; i++) {
+        vw_session session;
+        open_session(&session, &options, VIEWER_TEST_SCENE);
+        assert_true(vw_session_restart(&session, &diags));
+        for (int k = 0; k <= i; k++) {
+            static const int keys[] = {GLFW_KEY_T, GLFW_KEY_J, GLFW_KEY_M, GLFW_KEY_J, GLFW_KEY_T};
+            tap(&session, keys[k % 5], 0, 10 * (uint64_t)k);
+            session.state.look.camera.center.x += 0.01;
+            assert_true(vw_session_restart(&session, &diags));
+            fl_render_wait(session.render, 0.01);
+            vw_session_refresh(&session, &diags);
+            if (k == 5)
+                vw_session_settle(&session, &diags);
+        }
+        vw_session_close(&session); /* In the middle of whatever is measured. */
+    }
+    assert_int_equal(diags.error_count, 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_click_prints_the_rays_of_a_sample),
+        cmocka_unit_test(the_meter_says_what_the_scene_needs),
+        cmocka_unit_test(the_trade_curve_shows_where_the_picture_is),
+        cmocka_unit_test(the_stress_lens_finds_what_changes),
+        cmocka_unit_test(nobody_waits_for_measurements),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
