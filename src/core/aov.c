@@ -158,7 +158,7 @@ static bool eval_branch(const fl_frame *frame, const fl_aov_grid *grid, float *o
         float *out = out_values + 3 * i;
         out[0] = heaviest == FL_NONE ? 0.0f : (float)tree.nodes[heaviest].kind + 1.0f;
         out[1] = heaviest == FL_NONE ? 0.0f : (float)tree.nodes[heaviest].level;
-        out[2] = (float)tree.nodes[tree.node_count - 1].level;
+        out[2] = tree.node_count ? (float)tree.nodes[tree.node_count - 1].level : 0.0f;
     }
     fl_raytree_deinit(&tree);
     return is_fine;

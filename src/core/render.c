@@ -411,7 +411,7 @@ bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
 }
 
 bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3],
-                     uint32_t *out_samples)
+                     uint32_t *out_samples, double *out_rmse)
 {
     pthread_mutex_lock(&render->lock);
     const fl_job *job = render->shown;
@@ -419,6 +419,8 @@ bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3]
     if (is_there) {
         fl_film_row(job->film, x, y, 1, out_rgb);
         fl_film_samples_row(job->film, x, y, 1, out_samples);
+        *out_rmse = fl_estimate_square_rmse(job->estimate, x, y,
+                                            fl_schedule_complete_samples(job->schedule));
     }
     pthread_mutex_unlock(&render->lock);
     return is_there;

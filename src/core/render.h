@@ -122,9 +122,9 @@ typedef enum fl_render_map {
 bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
                         size_t capacity_floats, fl_progress *out_progress);
 
-/** Mean of one pixel of the picture to show, counted in the rendered part. False: none there. Any
- * thread. */
+/** Mean of one pixel of the picture to show, counted in the rendered part, and the error as in
+ * FL_RENDER_ERROR. False: none there. Any thread. */
 bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3],
-                     uint32_t *out_samples);
+                     uint32_t *out_samples, double *out_rmse);
 
 #endif

@@ -148,27 +148,33 @@ static void put_forecast(const vw_session *session, vw_board *board)
 }
 
 /* Cost, error and time to the same error against the present setting; a change of depth is one of
- * the picture, not of its noise. */
+ * the picture, not of its noise. Rays are exact, time is measured. */
 static void put_trial(const vw_trial *now, const vw_trial *trial, double rate, vw_board *board)
 {
-    double cost = trial->cpu_seconds / now->cpu_seconds, error = trial->rmse / now->rmse;
+    double rays = trial->rays / now->rays, time = trial->cpu_seconds / now->cpu_seconds;
+    double error = trial->rmse / now->rmse;
     char change[24];
-    if (strncmp(trial->name, "depth", 5) == 0) {
+    if (trial->change == 0.0) {
+        vw_board_add(board, -1.0, trial->name, "changes nothing");
+    } else if (strncmp(trial->name, "depth", 5) == 0) {
         vw_words_percent(trial->change, change);
-        vw_board_add(board, -1.0, trial->name, "time \303\227%.2f  off by %s", cost, change);
-        return;
+        vw_board_add(board, -1.0, trial->name, "rays \303\227%.2f  time \303\227%.2f  off by %s",
+                     rays, time, change);
+    } else {
+        double same = time * fl_d_exp2(fl_d_log2(error) / rate);
+        vw_board_add(board, -1.0, trial->name,
+                     "rays \303\227%.2f  time \303\227%.2f  error \303\227%.2f  \342\206\222 "
+                     "\303\227%.2f",
+                     rays, time, error, same);
     }
-    double same = cost * fl_d_exp2(fl_d_log2(error) / rate);
-    vw_board_add(board, -1.0, trial->name,
-                 "time \303\227%.2f  error \303\227%.2f  \342\206\222 \303\227%.2f", cost, error,
-                 same);
 }
 
 static void mark_trial(const vw_milestone *here, const vw_trial *now, const vw_trial *trial,
                        vw_plot *plot)
 {
     double time = trial->cpu_seconds / now->cpu_seconds, error = trial->rmse / now->rmse;
-    bool is_here = fabs(time - 1.0) < NEAR_HERE && fabs(error - 1.0) < NEAR_HERE;
+    bool is_here =
+        trial->change == 0.0 || (fabs(time - 1.0) < NEAR_HERE && fabs(error - 1.0) < NEAR_HERE);
     if (is_here || plot->mark_count == FL_COUNT_OF(plot->marks))
         return;
     vw_mark *mark = &plot->marks[plot->mark_count++];

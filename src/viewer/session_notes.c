@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "viewer/session.h"
+#include "viewer/words.h"
 
 typedef struct lines {
     char *out;
@@ -105,12 +106,17 @@ static void pixel_lines(vw_session *session, lines *l)
     double x = floor(state->cursor_x), y = floor(state->cursor_y);
     float rgb[3];
     uint32_t samples;
+    double rmse;
     if (x < 0.0 || y < 0.0 || x >= (double)session->progress.width ||
         y >= (double)session->progress.height ||
-        !fl_render_pixel(session->render, (uint32_t)x, (uint32_t)y, rgb, &samples))
+        !fl_render_pixel(session->render, (uint32_t)x, (uint32_t)y, rgb, &samples, &rmse))
         return;
     line(l, "pixel %.0f %.0f: %.4g %.4g %.4g, %u samples", x, y, (double)rgb[0], (double)rgb[1],
          (double)rgb[2], samples);
+    char error[24];
+    vw_words_percent(rmse, error);
+    if (rmse > 0.0)
+        line(l, "error %s, in its square of 16 pixels", error);
     fl_params params;
     fl_pick pick;
     fl_diags diags = {0};

@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "viewer/words.h"
+
 /* Render to exactly that many samples and have everything that is wanted measured. */
 static void settle(vw_session *session, uint32_t samples)
 {
@@ -64,7 +66,8 @@ static void a_click_prints_the_rays_of_a_sample(void **unused)
     assert_false(vw_session_board(&session, &board));
     float film[3], sum[3] = {0.0f, 0.0f, 0.0f};
     uint32_t samples;
-    assert_true(fl_render_pixel(session.render, 60, 30, film, &samples));
+    double rmse;
+    assert_true(fl_render_pixel(session.render, 60, 30, film, &samples, &rmse));
     /* Three clicks are the pixel's three samples: their mean is the film's value. */
     double total[3] = {0.0, 0.0, 0.0};
     for (uint32_t i = 0; i < 3; i++) {
@@ -92,6 +95,38 @@ static void a_click_prints_the_rays_of_a_sample(void **unused)
     tap(&session, GLFW_KEY_ESCAPE, 0, 700);
     assert_false(vw_session_board(&session, &board));
     assert_null(session.insight.lab);
+    vw_session_close(&session);
+}
+
+static void the_inspector_knows_the_pixel(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    char notes[1024], want[64], error[24];
+    float rgb[3];
+    uint32_t samples;
+    double rmse;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    tap(&session, GLFW_KEY_I, 0, 100);
+    vw_event move = {.kind = VW_EVENT_CURSOR, .x = 60.5, .y = 30.25};
+    send(&session, &move, 200);
+    settle(&session, 8);
+    vw_session_notes(&session, notes, sizeof notes);
+    assert_true(fl_render_pixel(session.render, 60, 30, rgb, &samples, &rmse));
+    assert_true(samples == 8 && rmse > 0.0);
+    snprintf(want, sizeof want, "pixel 60 30: %.4g %.4g %.4g, 8 samples\n", (double)rgb[0],
+             (double)rgb[1], (double)rgb[2]);
+    assert_non_null(strstr(notes, want));
+    vw_words_percent(rmse, error);
+    snprintf(want, sizeof want, "\nerror %s, in its", error);
+    assert_non_null(strstr(notes, want));
+    assert_non_null(strstr(notes, "\nsphere 3, three.txt:39"));
+    /* Blur by the depth that stands beside it. */
+    double depth, blur;
+    assert_int_equal(sscanf(strstr(notes, "depth "), "depth %lg  blur %lg px", &depth, &blur), 2);
+    double exact = fabs(vw_blur_px(&session.state.look.camera, 64, depth));
+    assert_true(fabs(blur - exact) < 0.02 * exact + 0.01);
     vw_session_close(&session);
 }
 
@@ -242,6 +277,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_click_prints_the_rays_of_a_sample),
+        cmocka_unit_test(the_inspector_knows_the_pixel),
         cmocka_unit_test(the_meter_says_what_the_scene_needs),
         cmocka_unit_test(the_trade_curve_shows_where_the_picture_is),
         cmocka_unit_test(the_stress_lens_finds_what_changes),
