@@ -29,6 +29,28 @@ vw_dirty vw_run_rays(vw_state *state, vw_amount amount)
     return VW_DIRTY_RAYS;
 }
 
+vw_dirty vw_run_noise(vw_state *state, vw_amount amount)
+{
+    (void)amount;
+    return toggle(state, VW_PANEL_NOISE);
+}
+
+vw_dirty vw_run_light_auto(vw_state *state, vw_amount amount)
+{
+    (void)amount;
+    uint32_t best = fl_min_u32(state->light_samples_best, VW_LIGHT_SAMPLES_MAX);
+    uint32_t own = state->look.light_samples;
+    if (best == 0) {
+        vw_state_say(state, "N measures what is best first");
+        return VW_DIRTY_WINDOW;
+    }
+    vw_state_say(state, "%u light sample%s a hit, as measured", best, best == 1 ? "" : "s");
+    if (best == (own ? own : state->scene_light_samples))
+        return VW_DIRTY_WINDOW;
+    state->look.light_samples = best;
+    return VW_DIRTY_CAMERA;
+}
+
 vw_dirty vw_run_needs(vw_state *state, vw_amount amount)
 {
     (void)amount;
@@ -54,6 +76,19 @@ vw_dirty vw_run_stress(vw_state *state, vw_amount amount)
 static void on_off(bool is_on, char out[VW_VALUE_MAX])
 {
     snprintf(out, VW_VALUE_MAX, "%s", is_on ? "on" : "off");
+}
+
+void vw_value_noise(const vw_state *state, char out[VW_VALUE_MAX])
+{
+    on_off(state->panel == VW_PANEL_NOISE, out);
+}
+
+void vw_value_light_auto(const vw_state *state, char out[VW_VALUE_MAX])
+{
+    if (state->light_samples_best)
+        snprintf(out, VW_VALUE_MAX, "%u", state->light_samples_best);
+    else
+        snprintf(out, VW_VALUE_MAX, "?");
 }
 
 void vw_value_needs(const vw_state *state, char out[VW_VALUE_MAX])

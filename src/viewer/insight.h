@@ -19,11 +19,12 @@ enum { VW_WAY_MAX = 32 };
 typedef struct vw_insight {
     vw_lab *lab; /**< NULL until first needed. */
     vw_lab_answer answer;
-    uint64_t wish; /**< Of the question below; 0: nothing was asked. */
+    uint64_t since; /**< First question whose answer fits the present one; 0: nothing was asked. */
     vw_lab_kind asked_kind;
     vw_stress asked_stress;
     vw_panel asked_panel;
     uint64_t asked_generation;
+    uint32_t asked_samples;
     vw_milestone way[VW_WAY_MAX]; /**< At powers of two from 4 samples on, of this generation. */
     uint32_t way_count;
     uint64_t way_generation;

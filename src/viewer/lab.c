@@ -231,27 +231,57 @@ static bool run_stress(vw_lab *lab, const vw_lab_question *question, vw_lab_answ
     return is_fine;
 }
 
-/* Answer; an answer that nobody wants any more is thrown away. */
-static void work(vw_lab *lab, const vw_lab_question *question, uint64_t wish)
+/* Hand an answer over. Takes what it owns. */
+static void publish(vw_lab *lab, const vw_lab_answer *answer)
 {
-    vw_lab_answer answer = {.kind = question->kind, .wish = wish, .samples = question->samples};
-    bool is_done = question->kind == VW_LAB_TRIALS   ? run_trials(lab, question, &answer)
-                   : question->kind == VW_LAB_STRESS ? run_stress(lab, question, &answer)
-                                                     : false;
-    if (lab->render)
-        fl_render_set_paused(lab->render, true);
-    if (!is_done && !answer.error[0]) {
-        vw_lab_answer_deinit(&answer);
-        return;
-    }
     pthread_mutex_lock(&lab->lock);
     vw_lab_answer old = lab->ready;
-    lab->ready = answer;
+    lab->ready = *answer;
     lab->is_fresh = true;
     pthread_mutex_unlock(&lab->lock);
     vw_lab_answer_deinit(&old);
     if (lab->notify)
         lab->notify(lab->context);
+}
+
+/* Round by round: the first is there soon, the last is sharp. */
+static bool run_noise(vw_lab *lab, const vw_lab_question *question, vw_lab_answer *answer)
+{
+    fl_diags diags = {0};
+    const fl_frame *frame = question->frames[0];
+    fl_noise *noise = fl_noise_create(frame->scene, &frame->params, question->samples, &diags);
+    bool is_fine = noise || refuse(answer, &diags);
+    fl_diags_deinit(&diags);
+    for (uint32_t round = 0; is_fine && round < FL_NOISE_ROUNDS;) {
+        if (is_stale(lab, answer->wish))
+            is_fine = false;
+        else if (!fl_noise_step(noise))
+            is_fine = refuse(answer, &(fl_diags){0});
+        else if (fl_noise_rounds(noise) > round && fl_noise_read(noise, &answer->noise) &&
+                 ++round < FL_NOISE_ROUNDS)
+            publish(lab, answer);
+    }
+    fl_noise_destroy(noise);
+    return is_fine;
+}
+
+/* Answer; an answer that nobody wants any more is thrown away. */
+static void work(vw_lab *lab, const vw_lab_question *question, uint64_t wish)
+{
+    vw_lab_answer answer = {.kind = question->kind, .wish = wish, .samples = question->samples};
+    bool is_done = question->frame_count > 0;
+    if (is_done && question->kind == VW_LAB_NOISE)
+        is_done = run_noise(lab, question, &answer);
+    else if (is_done && question->kind == VW_LAB_TRIALS)
+        is_done = run_trials(lab, question, &answer);
+    else if (is_done && question->kind == VW_LAB_STRESS)
+        is_done = run_stress(lab, question, &answer);
+    if (lab->render)
+        fl_render_set_paused(lab->render, true);
+    if (is_done || answer.error[0])
+        publish(lab, &answer);
+    else
+        vw_lab_answer_deinit(&answer);
 }
 
 static void *thread_main(void *context)

@@ -12,6 +12,7 @@
 
 typedef enum vw_lab_kind {
     VW_LAB_NOTHING,
+    VW_LAB_NOISE,  /**< Where the noise comes from. */
     VW_LAB_TRIALS, /**< What other settings would cost and buy. */
     VW_LAB_STRESS  /**< What changes in the picture when nothing, or one number, should. */
 } vw_lab_kind;
@@ -31,8 +32,8 @@ typedef struct vw_trial {
 typedef struct vw_lab_question {
     vw_lab_kind kind;
     uint32_t samples;
-    /** Trials: the present setting first. Stress: the picture, and what it is held against unless
-     * `scale` says it. vw_lab_ask takes a reference of each. */
+    /** Noise: the picture. Trials: the present setting first. Stress: the picture, and what it is
+     * held against unless `scale` says it. vw_lab_ask takes a reference of each. */
     fl_frame *frames[VW_TRIALS_MAX];
     char names[VW_TRIALS_MAX][VW_TRIAL_NAME];
     uint32_t frame_count;
@@ -51,6 +52,7 @@ typedef struct vw_lab_answer {
     uint32_t samples;
     vw_trial trials[VW_TRIALS_MAX];
     uint32_t trial_count;
+    fl_noise_split noise; /**< Its `rounds` grow while it is sharpened. */
     float *changes; /**< Stress: largest difference of a pixel's channels, sign dropped; infinite
                        where one of the two is not a number. Owned. */
     uint32_t width, height;

@@ -8,7 +8,7 @@
 #include "viewer/session.h"
 #include "viewer/words.h"
 
-enum { USES_COLUMNS = 44 };
+enum { USES_COLUMNS = 44, TEXT_COLUMNS = 56 };
 
 /* Between which rates errors fall: of random samples, and of the best seen (core's estimate). */
 #define RATE_SLOW 0.5
@@ -102,6 +102,50 @@ static void put_wait(const vw_session *session, vw_board *board, vw_lab_kind kin
         vw_board_note(board, "not measured: %s", answer->error);
     else
         vw_board_note(board, "being measured ...");
+}
+
+/* Text in dim rows, broken between words. */
+static void put_text(vw_board *board, const char *text)
+{
+    while (*text) {
+        size_t length = strlen(text), at = length;
+        if (length > TEXT_COLUMNS) {
+            at = TEXT_COLUMNS;
+            while (at > 0 && text[at] != ' ')
+                at--;
+            at = at ? at : TEXT_COLUMNS;
+        }
+        vw_board_note(board, "%.*s", (int)at, text);
+        text += at + (text[at] == ' ');
+    }
+}
+
+static void noise_board(const vw_session *session, vw_board *board)
+{
+    const vw_lab_answer *answer = &session->insight.answer;
+    const fl_noise_split *noise = &answer->noise;
+    snprintf(board->title, sizeof board->title, "where the noise comes from");
+    if (!vw_insight_has(&session->insight, VW_LAB_NOISE) || answer->error[0]) {
+        put_wait(session, board, VW_LAB_NOISE);
+        return;
+    }
+    char name[FL_NOISE_NAME_BYTES], advice[FL_NOISE_ADVICE_BYTES];
+    for (uint32_t i = 0; i < noise->source_count; i++) {
+        const fl_noise_source *source = &noise->sources[i];
+        fl_noise_source_name(source, name);
+        vw_board_add(board, source->share, name, "%.0f %% \302\261 %.0f", 100.0 * source->share,
+                     100.0 * source->share_error);
+    }
+    fl_noise_advice(noise, advice);
+    /* The shares stand above. */
+    const char *knob = strchr(advice, ':');
+    put_text(board, knob && noise->source_count ? knob + 2 : advice);
+    if (noise->light_samples > 0.0)
+        vw_board_note(board, "light samples %.3g; best %.2g, error \303\227%.2f in the same time",
+                      noise->light_samples, noise->light_samples_best,
+                      1.0 / noise->light_samples_gain);
+    vw_board_note(board, "noise of %u samples; round %u of %d", noise->samples, noise->rounds,
+                  FL_NOISE_ROUNDS);
 }
 
 static void needs_board(const vw_session *session, const fl_frame *frame, vw_board *board)
@@ -237,6 +281,9 @@ bool vw_session_board(vw_session *session, vw_board *out)
     switch (session->state.panel) {
     case VW_PANEL_RAYS:
         rays_board(session, out);
+        return true;
+    case VW_PANEL_NOISE:
+        noise_board(session, out);
         return true;
     case VW_PANEL_NEEDS:
         vw_state_params(&session->state, &session->scene.params, &params);

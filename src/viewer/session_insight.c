@@ -12,7 +12,8 @@ enum {
     TRIAL_SAMPLES = 16,
     TRIAL_PIXELS = 128 * 128,
     STRESS_SAMPLES = 1,
-    PICTURE_SAMPLES_FIRST = 4 /* The picture itself comes first. */
+    PICTURE_SAMPLES_FIRST = 4, /* The picture itself comes first. */
+    NOISE_SAMPLES_MAX = 64     /* The noise of more is split alike, and takes long. */
 };
 
 #define SCALE_SMALL 1e-3
@@ -33,6 +34,8 @@ static vw_lab_kind wanted_kind(const vw_state *state)
 {
     if (state->stress != VW_STRESS_OFF)
         return VW_LAB_STRESS;
+    if (state->panel == VW_PANEL_NOISE)
+        return VW_LAB_NOISE;
     return state->panel == VW_PANEL_NEEDS || state->panel == VW_PANEL_TRADE ? VW_LAB_TRIALS
                                                                             : VW_LAB_NOTHING;
 }
@@ -168,42 +171,58 @@ static void prepare_stress(vw_session *session, vw_lab_question *question, fl_pa
     }
 }
 
-static void ask(vw_session *session, vw_lab_kind kind, fl_diags *diags)
+/* The power of two of samples that the picture has come to, within bounds. */
+static uint32_t noise_samples(const fl_progress *progress)
+{
+    uint32_t samples = PICTURE_SAMPLES_FIRST;
+    while (samples < NOISE_SAMPLES_MAX && 2 * samples <= progress->complete_samples)
+        samples *= 2;
+    return samples;
+}
+
+/* Returns the number of the question; 0: none could be asked. */
+static uint64_t ask(vw_session *session, vw_lab_kind kind, fl_diags *diags)
 {
     vw_insight *insight = &session->insight;
     if (!insight->lab && kind == VW_LAB_NOTHING)
-        return;
+        return 0;
     if (!insight->lab)
         insight->lab = vw_lab_create(session->notify, session->notify_context, diags);
     if (!insight->lab)
-        return;
+        return 0;
     vw_lab_question question = {.kind = kind, .samples = TRIAL_SAMPLES};
     fl_params params;
     vw_state_params(&session->state, &session->scene.params, &params);
-    if (kind == VW_LAB_STRESS) {
+    if (kind == VW_LAB_NOISE) {
+        question.samples = noise_samples(&session->progress);
+        add_frame(session, &question, "", &params, diags);
+    } else if (kind == VW_LAB_STRESS) {
         prepare_stress(session, &question, &params, diags);
     } else if (kind == VW_LAB_TRIALS) {
         shrink(&params);
         add_frame(session, &question, "now", &params, diags);
         if (question.frame_count == 0)
-            return;
+            return 0;
         if (session->state.panel == VW_PANEL_TRADE)
             add_knobs(session, &question, &params, diags);
         else
             add_features(session, &question, &params, diags);
     }
-    insight->wish = vw_lab_ask(insight->lab, &question);
+    uint64_t wish = vw_lab_ask(insight->lab, &question);
     for (uint32_t i = 0; i < question.frame_count; i++)
         fl_frame_release(question.frames[i]);
+    return wish;
 }
 
-/* Ask, or drop, what the state wants, once for each picture. */
+/* Ask, or drop, what the state wants, once for each picture; where the noise comes from, again as
+ * it grows finer: the answer so far fits until then. */
 static void ask_if_due(vw_session *session, bool is_urgent, fl_diags *diags)
 {
     vw_insight *insight = &session->insight;
     const vw_state *state = &session->state;
     const fl_progress *progress = &session->progress;
     vw_lab_kind kind = wanted_kind(state);
+    uint32_t samples = kind == VW_LAB_NOISE ? noise_samples(progress) : 0;
     bool is_same = kind == insight->asked_kind && state->stress == insight->asked_stress &&
                    (kind != VW_LAB_TRIALS || state->panel == insight->asked_panel) &&
                    (kind == VW_LAB_NOTHING || progress->generation == insight->asked_generation);
@@ -211,14 +230,16 @@ static void ask_if_due(vw_session *session, bool is_urgent, fl_diags *diags)
                     (progress->generation != progress->newest_generation ||
                      progress->complete_samples < PICTURE_SAMPLES_FIRST) &&
                     progress->state != FL_RENDER_DONE;
-    if (is_same || may_wait)
+    if (may_wait || (is_same && samples == insight->asked_samples))
         return;
     insight->asked_kind = kind;
     insight->asked_stress = state->stress;
     insight->asked_panel = state->panel;
     insight->asked_generation = progress->generation;
-    insight->wish = 0;
-    ask(session, kind, diags);
+    insight->asked_samples = samples;
+    uint64_t wish = ask(session, kind, diags);
+    if (!is_same || wish == 0)
+        insight->since = wish;
 }
 
 void vw_insight_note(vw_session *session)
@@ -257,13 +278,16 @@ bool vw_insight_follow(vw_session *session, bool is_urgent, fl_diags *diags)
     if (!insight->lab || !vw_lab_take(insight->lab, &insight->answer))
         return false;
     sum_up_stress(insight);
+    const fl_noise_split *noise = &insight->answer.noise;
+    if (vw_insight_has(insight, VW_LAB_NOISE) && noise->light_samples > 0.0)
+        session->state.light_samples_best = (uint32_t)floor(noise->light_samples_best + 0.5);
     return true;
 }
 
 bool vw_insight_has(const vw_insight *insight, vw_lab_kind kind)
 {
-    return insight->wish != 0 && insight->answer.kind == kind &&
-           insight->answer.wish == insight->wish;
+    return insight->since != 0 && insight->answer.kind == kind &&
+           insight->answer.wish >= insight->since;
 }
 
 /* Text of a tree from malloc; NULL: out of memory. */

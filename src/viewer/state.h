@@ -56,6 +56,7 @@ typedef enum vw_assist {
 typedef enum vw_panel {
     VW_PANEL_NONE,
     VW_PANEL_RAYS,  /**< The tree of rays of one sample. */
+    VW_PANEL_NOISE, /**< Where the noise comes from, and what helps. */
     VW_PANEL_NEEDS, /**< What the scene uses, and what that costs. */
     VW_PANEL_TRADE, /**< Error against time, and what other settings would buy. */
     VW_PANEL_COUNT
@@ -139,6 +140,7 @@ typedef struct vw_state {
     bool is_inspecting;
     vw_panel panel;
     vw_stress stress;
+    uint32_t light_samples_best;          /**< As measured for this scene; 0: not measured. */
     uint32_t rays_x, rays_y, rays_sample; /**< Picture pixels. */
     double cursor_x, cursor_y;            /**< Picture pixels. */
     /* Window. */

@@ -168,6 +168,8 @@ static const struct {
     {"layer", SHOWN, VW_DIRTY_SHOW},
     {"inspect", SHOWN, VW_DIRTY_WINDOW},
     {"rays", PANEL, VW_DIRTY_RAYS},
+    {"noise", PANEL, VW_DIRTY_SHOW},
+    {"light-auto", MESSAGE, VW_DIRTY_WINDOW},
     {"needs", PANEL, VW_DIRTY_SHOW},
     {"trade", PANEL, VW_DIRTY_SHOW},
     {"stress", PANEL | MESSAGE, VW_DIRTY_SHOW},

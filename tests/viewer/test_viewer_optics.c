@@ -152,7 +152,10 @@ static void views_show_without_touching_the_film(void **unused)
     memcpy(plain, vw_session_shown(&session), bytes);
     memcpy(before, plain, bytes);
     for (int layer = VW_LAYER_BEAUTY; layer < VW_LAYER_COUNT; layer++) {
-        assert_true(tap(&session, GLFW_KEY_F2 + layer, 0, 10) & VW_DIRTY_SHOW);
+        bool is_last = layer == VW_LAYER_BRANCH;
+        int key = is_last ? GLFW_KEY_F8 : GLFW_KEY_F2 + layer;
+        assert_true(tap(&session, key, is_last ? GLFW_MOD_SHIFT : 0, 10) & VW_DIRTY_SHOW);
+        assert_int_equal(session.state.layer, layer);
         vw_session_settle(&session, &diags);
         assert_true(vw_session_refresh(&session, &diags));
         const uint8_t *shown = vw_session_shown(&session);

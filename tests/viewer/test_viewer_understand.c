@@ -174,6 +174,56 @@ static void the_meter_says_what_the_scene_needs(void **unused)
     vw_session_close(&session);
 }
 
+static void the_noise_is_split_and_light_samples_offered(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    vw_board board;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    tap(&session, GLFW_KEY_N, GLFW_MOD_SHIFT, 50);
+    assert_int_equal(session.state.look.light_samples, 0);
+    tap(&session, GLFW_KEY_N, 0, 100);
+    settle(&session, 16);
+    /* What the window shows is what the core says when it is asked the same. */
+    fl_params params;
+    fl_diags diags = {0};
+    fl_noise_split want;
+    vw_state_params(&session.state, &session.scene.params, &params);
+    fl_noise *noise = fl_noise_create(session.scene.compiled, &params, 16, &diags);
+    assert_non_null(noise);
+    while (fl_noise_rounds(noise) < FL_NOISE_ROUNDS)
+        assert_true(fl_noise_step(noise));
+    assert_true(fl_noise_read(noise, &want));
+    fl_noise_destroy(noise);
+    const fl_noise_split *got = &session.insight.answer.noise;
+    assert_int_equal(got->rounds, FL_NOISE_ROUNDS);
+    assert_int_equal(got->source_count, want.source_count);
+    assert_true(vw_session_board(&session, &board));
+    double sum = 0.0;
+    for (uint32_t i = 0; i < want.source_count; i++) {
+        char name[FL_NOISE_NAME_BYTES];
+        assert_true(got->sources[i].share == want.sources[i].share);
+        fl_noise_source_name(&want.sources[i], name);
+        assert_true(row_named(&board, name)->bar == want.sources[i].share);
+        sum += want.sources[i].share;
+    }
+    assert_true(fabs(sum - 1.0) < 1e-9);
+    /* Later, the noise of more samples; the old answer stands until then. */
+    settle(&session, 32);
+    assert_int_equal(session.insight.answer.noise.samples, 32);
+    /* Shift+N takes the number that is shown; undo gives it back. */
+    uint32_t best = session.state.light_samples_best;
+    assert_true(best >= 1);
+    session.state.light_samples_best = best = best == 1 ? 3 : best;
+    assert_true(tap(&session, GLFW_KEY_N, GLFW_MOD_SHIFT, 5000) & VW_DIRTY_CAMERA);
+    assert_int_equal(session.state.look.light_samples, best);
+    assert_false(tap(&session, GLFW_KEY_N, GLFW_MOD_SHIFT, 9000) & VW_DIRTY_CAMERA);
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 13000);
+    assert_int_equal(session.state.look.light_samples, 0);
+    vw_session_close(&session);
+}
+
 static void the_trade_curve_shows_where_the_picture_is(void **unused)
 {
     (void)unused;
@@ -279,6 +329,7 @@ int main(void)
         cmocka_unit_test(a_click_prints_the_rays_of_a_sample),
         cmocka_unit_test(the_inspector_knows_the_pixel),
         cmocka_unit_test(the_meter_says_what_the_scene_needs),
+        cmocka_unit_test(the_noise_is_split_and_light_samples_offered),
         cmocka_unit_test(the_trade_curve_shows_where_the_picture_is),
         cmocka_unit_test(the_stress_lens_finds_what_changes),
         cmocka_unit_test(nobody_waits_for_measurements),
