@@ -80,18 +80,13 @@ static bool allocate_packs(fl_compiler *c, fl_tri_mesh *mesh, uint32_t count)
     return mesh->packs != NULL;
 }
 
-static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, float largest)
+static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
 {
-    fl_arena scratch = {0};
-    fl_bvh_box *boxes = fl_arena_alloc(&scratch, mesh->face_count, sizeof *boxes);
-    for (uint32_t f = 0; boxes && f < mesh->face_count; f++)
-        boxes[f] = face_box(mesh, f);
     mesh->bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *mesh->bvh);
-    bool ok = boxes && mesh->bvh &&
-              fl_bvh_build(mesh->bvh, &c->out->arena, boxes, mesh->face_count, FL_BOX_PAD * largest,
-                           FL_ORIGIN_PAD, c->pool);
-    fl_arena_deinit(&scratch);
-    if (!ok || !allocate_packs(c, mesh, mesh->bvh->leaf_count))
+    if (!mesh->bvh ||
+        !fl_bvh_build(mesh->bvh, &c->out->arena, boxes, mesh->face_count, FL_BOX_PAD * largest,
+                      FL_ORIGIN_PAD, c->pool) ||
+        !allocate_packs(c, mesh, mesh->bvh->leaf_count))
         return false;
     fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);
     c->out->accel_bytes += mesh->bvh->node_count * sizeof *mesh->bvh->nodes +
@@ -99,16 +94,15 @@ static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, float largest)
     return true;
 }
 
-static bool accel_octree(fl_compiler *c, fl_tri_mesh *mesh, float largest)
+static bool accel_octree(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
 {
     uint32_t height = c->options->octree_height ? c->options->octree_height : FL_OCTREE_HEIGHT_MAX;
-    const fl_octree_faces faces = {mesh->position, mesh->index, mesh->face_count};
     fl_octree *tree = fl_arena_alloc(&c->out->arena, 1, sizeof *tree);
     mesh->octree = tree;
     /* Twice the widening: the planes of small cells come about by eight roundings. */
     if (!tree ||
-        !fl_octree_build(tree, &c->out->arena, &faces, fl_min_u32(height, FL_OCTREE_HEIGHT_MAX),
-                         2.0f * FL_BOX_PAD * largest) ||
+        !fl_octree_build(tree, &c->out->arena, boxes, mesh->face_count,
+                         fl_min_u32(height, FL_OCTREE_HEIGHT_MAX), 2.0f * FL_BOX_PAD * largest) ||
         !allocate_packs(c, mesh, tree->pack_count))
         return false;
     for (uint32_t k = 0; k < tree->leaf_count; k++) {
@@ -124,17 +118,22 @@ static bool accel_octree(fl_compiler *c, fl_tri_mesh *mesh, float largest)
 bool fl_compile_accel(fl_compiler *c, fl_tri_mesh *mesh)
 {
     float largest = largest_coordinate(mesh);
-    bool ok = false;
-    if (c->options->accel == FL_ACCEL_BVH) {
-        ok = accel_bvh(c, mesh, largest);
-    } else if (c->options->accel == FL_ACCEL_OCTREE) {
-        ok = accel_octree(c, mesh, largest);
-    } else {
+    fl_arena scratch = {0};
+    fl_bvh_box *boxes = fl_arena_alloc(&scratch, mesh->face_count, sizeof *boxes);
+    bool ok = boxes != NULL;
+    for (uint32_t f = 0; ok && f < mesh->face_count; f++)
+        boxes[f] = face_box(mesh, f);
+    if (ok && c->options->accel == FL_ACCEL_BVH) {
+        ok = accel_bvh(c, mesh, boxes, largest);
+    } else if (ok && c->options->accel == FL_ACCEL_OCTREE) {
+        ok = accel_octree(c, mesh, boxes, largest);
+    } else if (ok) {
         ok = allocate_packs(c, mesh, (mesh->face_count + 7) / 8);
         if (ok)
             fill_packs(mesh, 0, NULL, 0, mesh->face_count);
     }
     c->out->accel_bytes += ok ? mesh->pack_count * sizeof *mesh->packs : 0;
+    fl_arena_deinit(&scratch);
     return ok || fl_out_of_memory(c->diags, "the acceleration structure of a mesh");
 }
 

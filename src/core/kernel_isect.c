@@ -10,14 +10,26 @@
 
 /* --- Objects with a transform, and meshes ---------------------------------------------------- */
 
+static inline void leaf_nearest(packet *p, uint64_t lanes, const void *context, uint32_t child)
+{
+    packet_meet_pack(p, lanes, context, child, false);
+}
+
+static inline void leaf_any(packet *p, uint64_t lanes, const void *context, uint32_t child)
+{
+    packet_meet_pack(p, lanes, context, child, true);
+}
+
 static void walk_mesh_nearest(packet *p, const mesh_target *target)
 {
-    packet_walk(p, target, false);
+    target->counts->node_visits +=
+        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_nearest, target);
 }
 
 static void walk_mesh_any(packet *p, const mesh_target *target)
 {
-    packet_walk(p, target, true);
+    target->counts->node_visits +=
+        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_any, target);
 }
 
 static void walk_octree(packet *p, const mesh_target *target, const bool is_any)
@@ -28,25 +40,32 @@ static void walk_octree(packet *p, const mesh_target *target, const bool is_any)
         packet_walk_octree(p, target, false);
 }
 
-/* Rays [first, first + count) of the chunk against a mesh in its own space. */
-FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint32_t first, uint32_t count,
+static void packet_begin(packet *p, const chunk *c)
+{
+    p->lanes = p->z_is_1 = p->z_is_2 = p->down[0] = p->down[1] = p->down[2] = 0;
+    p->has_source = false;
+    p->t = c->t;
+    p->object = c->object;
+    p->prim = c->prim;
+    p->source_object = c->source_object;
+    p->source_prim = c->source_prim;
+}
+
+/* Rays `lanes` of the chunk against a mesh in its own space. */
+FL_INLINE void meet_mesh_instance(const job *j, chunk *c, uint64_t lanes,
                                   const fl_instance *instance, const bool is_any)
 {
     _Alignas(64) float local[6][CHUNK_RAYS];
     packet p;
-    p.lanes = p.z_is_1 = p.z_is_2 = p.down[0] = p.down[1] = p.down[2] = 0;
-    p.has_source = false;
-    p.t = c->t;
-    p.object = c->object;
-    p.prim = c->prim;
-    p.source_object = c->source_object;
-    p.source_prim = c->source_prim;
+    packet_begin(&p, c);
     for (int a = 0; a < 3; a++) {
         p.o[a] = instance->is_identity ? c->o[a] : local[a];
         p.d[a] = instance->is_identity ? c->d[a] : local[3 + a];
     }
-    for (uint32_t i = first; i < first + count; i += FL_W) {
-        fl_wm alive = chunk_alive(c, i);
+    for (uint64_t left = lanes; left;) {
+        uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
+        fl_wm alive = chunk_alive(c, i) & group_of_bits(group_bits(left, i));
+        left &= ~((uint64_t)FL_W_ALL << i);
         if (!fl_wm_any(alive))
             continue;
         bundle b = bundle_load(c, i);
@@ -108,14 +127,18 @@ static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
     chunk_accept(c, i, t, instance->object, is_any);
 }
 
-FL_INLINE void meet_instance(const job *j, chunk *c, uint32_t first, uint32_t count,
-                             const fl_instance *instance, const bool is_any)
+FL_INLINE void meet_instance(const job *j, chunk *c, uint64_t lanes, const fl_instance *instance,
+                             const bool is_any)
 {
-    if (instance->kind == FL_OBJECT_MESH)
-        meet_mesh_instance(j, c, first, count, instance, is_any);
-    else
-        for (uint32_t i = first; i < first + count; i += FL_W)
-            meet_shape_instance(j, c, i, instance, is_any);
+    if (instance->kind == FL_OBJECT_MESH) {
+        meet_mesh_instance(j, c, lanes, instance, is_any);
+        return;
+    }
+    for (uint64_t left = lanes; left;) {
+        uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
+        left &= ~((uint64_t)FL_W_ALL << i);
+        meet_shape_instance(j, c, i, instance, is_any);
+    }
 }
 
 /* --- Objects in world space ------------------------------------------------------------------ */
@@ -157,67 +180,71 @@ FL_INLINE void meet_all_baked(const job *j, chunk *c, uint32_t i, const bundle *
     }
 }
 
-/* --- The hierarchy of objects: a bundle goes down together ------------------------------------ */
+/* --- The hierarchy of objects ---------------------------------------------------------------- */
 
-typedef struct bundle_visit {
-    uint32_t child, lanes;
-} bundle_visit;
+/* Whom a leaf of the objects' hierarchy belongs to. */
+typedef struct object_walk {
+    const job *j;
+    chunk *c;
+} object_walk;
 
-static inline void meet_leaf_entries(const job *j, chunk *c, uint32_t i, const bundle *b,
-                                     uint32_t child, const bool is_any)
+FL_INLINE void meet_leaf_entries(uint64_t lanes, const object_walk *walk, uint32_t child,
+                                 const bool is_any)
 {
+    const job *j = walk->j;
+    chunk *c = walk->c;
     const fl_geometry *g = j->geometry;
     const uint32_t *items = &g->object_bvh->items[(size_t)FL_BVH_LEAF_INDEX(child) * FL_BVH_WIDTH];
     for (uint32_t n = 0; n < FL_BVH_LEAF_COUNT(child); n++) {
         const fl_entry *entry = &g->entries[items[n]];
         if (entry->is_instance) {
-            meet_instance(j, c, i, FL_W, &g->instances[entry->index], is_any);
+            meet_instance(j, c, lanes, &g->instances[entry->index], is_any);
             continue;
         }
         if (entry->kind != FL_OBJECT_REVOLUTION)
-            j->context->counts.primitive_tests += lane_count(chunk_alive(c, i));
-        meet_baked(j, c, i, b, entry->kind, entry->index, is_any);
+            j->context->counts.primitive_tests += (uint32_t)__builtin_popcountll(lanes);
+        for (uint64_t left = lanes; left;) {
+            uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
+            left &= ~((uint64_t)FL_W_ALL << i);
+            bundle b = bundle_load(c, i);
+            meet_baked(j, c, i, &b, entry->kind, entry->index, is_any);
+        }
     }
 }
 
-static void walk_objects(const job *j, chunk *c, uint32_t i, const bundle *b, const bool is_any)
+static inline void objects_nearest(packet *p, uint64_t lanes, const void *context, uint32_t child)
+{
+    (void)p;
+    meet_leaf_entries(lanes, context, child, false);
+}
+
+static inline void objects_any(packet *p, uint64_t lanes, const void *context, uint32_t child)
+{
+    (void)p;
+    meet_leaf_entries(lanes, context, child, true);
+}
+
+FL_INLINE void walk_objects(const job *j, chunk *c, const bool is_any)
 {
     const fl_bvh *bvh = j->geometry->object_bvh;
-    visit stack[FL_BVH_STACK_MAX];
-    uint32_t height = 0, child = 0;
-    slabs s = slabs_of(b, bvh->origin_pad);
-    for (;;) {
-        if (child & FL_BVH_LEAF) {
-            meet_leaf_entries(j, c, i, b, child, is_any);
-        } else {
-            const fl_bvh_node *node = &bvh->nodes[child];
-            fl_wf best = fl_wf_load(c->t + i);
-            fl_wm alive = best > 0.0f;
-            float near[FL_BVH_WIDTH];
-            uint32_t bits = 0;
-            if (!fl_wm_any(alive))
-                return;
-            j->context->counts.node_visits += lane_count(alive);
-            for (uint32_t k = 0; k < FL_BVH_WIDTH && node->child[k] != FL_NONE; k++) {
-                float lo[3] = {node->plane[0][k], node->plane[2][k], node->plane[4][k]};
-                float hi[3] = {node->plane[1][k], node->plane[3][k], node->plane[5][k]};
-                fl_wf enter;
-                uint32_t lanes = fl_wm_bits(slabs_meet(&s, lo, hi, best, &enter) & alive);
-                near[k] = INFINITY;
-                bits |= (uint32_t)(lanes != 0) << k;
-                for (; lanes; lanes &= lanes - 1) {
-                    float e = enter[__builtin_ctz(lanes)];
-                    near[k] = e < near[k] ? e : near[k];
-                }
-            }
-            height = push_sorted(stack, height, node, near, bits);
-        }
-        do {
-            if (height == 0)
-                return;
-            child = stack[--height].child;
-        } while (!fl_wm_any(fl_wf_load(c->t + i) >= stack[height].near));
+    const object_walk walk = {j, c};
+    packet p;
+    packet_begin(&p, c);
+    for (int a = 0; a < 3; a++) {
+        p.o[a] = c->o[a];
+        p.d[a] = c->d[a];
     }
+    for (uint32_t i = 0; i < c->count; i += FL_W) {
+        fl_wm alive = chunk_alive(c, i);
+        if (!fl_wm_any(alive))
+            continue;
+        bundle b = bundle_load(c, i);
+        slabs s = slabs_of(&b, bvh->origin_pad);
+        packet_put(&p, i, &b, &s, alive);
+    }
+    if (p.lanes)
+        j->context->counts.node_visits +=
+            packet_walk(&p, bvh, NULL, is_any ? objects_any : objects_nearest, &walk);
 }
 
 /* --- Whole chunks ---------------------------------------------------------------------------- */
@@ -230,18 +257,19 @@ FL_INLINE void meet_geometry(const job *j, chunk *c, const bool is_any)
             continue;
         bundle b = bundle_load(c, i);
         meet_all_baked(j, c, i, &b, FL_OBJECT_PLANE, g->planes.baked_count, is_any);
-        if (g->object_bvh) {
-            walk_objects(j, c, i, &b, is_any);
+        if (g->object_bvh)
             continue;
-        }
         meet_all_baked(j, c, i, &b, FL_OBJECT_SPHERE, g->spheres.baked_count, is_any);
         meet_all_baked(j, c, i, &b, FL_OBJECT_SQUARE, g->patches.baked_count, is_any);
         meet_all_baked(j, c, i, &b, FL_OBJECT_REVOLUTION, g->revolutions.baked_count, is_any);
     }
+    uint64_t all = c->count == CHUNK_RAYS ? ~(uint64_t)0 : ((uint64_t)1 << c->count) - 1;
+    if (g->object_bvh)
+        walk_objects(j, c, is_any);
     /* With a hierarchy, only what has no bounds is left. */
     for (uint32_t k = g->object_bvh ? g->bounded_entry_count : 0; k < g->entry_count; k++)
         if (g->entries[k].is_instance)
-            meet_instance(j, c, 0, c->count, &g->instances[g->entries[k].index], is_any);
+            meet_instance(j, c, all, &g->instances[g->entries[k].index], is_any);
 }
 
 FL_INLINE chunk chunk_of(const fl_rays *rays, uint32_t first, float *t, uint32_t *object,

@@ -125,12 +125,17 @@ FL_INLINE void rays_meet_node(const packet *p, uint32_t lanes, uint32_t first,
     }
 }
 
-/* What a visit will read, on its way from memory while others take their turn. */
-FL_INLINE void packet_fetch(const mesh_target *target, uint32_t child)
+/* What a visit will read, on its way from memory while others take their turn. Leaves of a mesh are
+ * packs. */
+FL_INLINE void packet_fetch(const fl_bvh *bvh, const fl_tri_pack *packs, uint32_t child)
 {
-    const char *first = child & FL_BVH_LEAF
-                            ? (const char *)&target->mesh->packs[FL_BVH_LEAF_INDEX(child)]
-                            : (const char *)&target->mesh->bvh->nodes[child];
+    const char *first;
+    if (!(child & FL_BVH_LEAF))
+        first = (const char *)&bvh->nodes[child];
+    else if (packs)
+        first = (const char *)&packs[FL_BVH_LEAF_INDEX(child)];
+    else
+        return;
     for (int line = 0; line < 4; line++)
         __builtin_prefetch(first + 64 * line);
 }
@@ -146,24 +151,26 @@ FL_INLINE uint32_t packet_push(packet_visit *stack, uint32_t base, uint32_t heig
 }
 
 FL_INLINE uint32_t packet_push_beam(const packet *p, uint64_t lanes, uint32_t index,
-                                    const mesh_target *target, packet_visit *stack, uint32_t height)
+                                    const fl_bvh *bvh, const fl_tri_pack *packs,
+                                    packet_visit *stack, uint32_t height)
 {
-    const fl_bvh_node *node = &target->mesh->bvh->nodes[index];
+    const fl_bvh_node *node = &bvh->nodes[index];
     _Alignas(32) float near[8];
     uint32_t base = height;
     for (uint32_t bits = beam_meet_node(p, node, near); bits; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctz(bits);
         packet_visit v = {lanes, node->child[k], index * 8 + k, near[k]};
-        packet_fetch(target, v.child);
+        packet_fetch(bvh, packs, v.child);
         height = packet_push(stack, base, height, v);
     }
     return height;
 }
 
 FL_INLINE uint32_t packet_push_rays(const packet *p, uint64_t lanes, uint32_t index,
-                                    const mesh_target *target, packet_visit *stack, uint32_t height)
+                                    const fl_bvh *bvh, const fl_tri_pack *packs,
+                                    packet_visit *stack, uint32_t height)
 {
-    const fl_bvh_node *node = &target->mesh->bvh->nodes[index];
+    const fl_bvh_node *node = &bvh->nodes[index];
     _Alignas(32) float near[8];
     _Alignas(32) uint32_t met[2][8] = {{0}, {0}};
     uint32_t base = height;
@@ -177,7 +184,7 @@ FL_INLINE uint32_t packet_push_rays(const packet *p, uint64_t lanes, uint32_t in
         uint64_t both = met[0][k] | (uint64_t)met[1][k] << 32;
         if (!both)
             continue;
-        packet_fetch(target, node->child[k]);
+        packet_fetch(bvh, packs, node->child[k]);
         height = packet_push(stack, base, height,
                              (packet_visit){both, node->child[k], FL_NONE, near[k]});
     }
@@ -194,9 +201,13 @@ static inline uint32_t group_count(uint64_t lanes)
     return count;
 }
 
-FL_INLINE void packet_walk(packet *p, const mesh_target *target, const bool is_any)
+/* What is done with the rays that come to a leaf. */
+typedef void packet_leaf(packet *p, uint64_t lanes, const void *context, uint32_t child);
+
+/* Returns the number of node visits by rays. `leaf` is known where this is inlined. */
+FL_INLINE uint64_t packet_walk(packet *p, const fl_bvh *bvh, const fl_tri_pack *packs,
+                               packet_leaf *leaf, const void *context)
 {
-    const fl_bvh *bvh = target->mesh->bvh;
     packet_visit stack[FL_BVH_STACK_MAX];
     uint32_t height = 0;
     uint64_t node_visits = 0;
@@ -216,17 +227,17 @@ FL_INLINE void packet_walk(packet *p, const mesh_target *target, const bool is_a
         if (!v.lanes)
             continue;
         if (is_leaf) {
-            packet_meet_pack(p, v.lanes, target, v.child, is_any);
+            leaf(p, v.lanes, context, v.child);
             continue;
         }
         uint32_t count = (uint32_t)__builtin_popcountll(v.lanes);
         node_visits += count;
         if (p->has_beam && FL_W > 1 && count >= GROUP_RAYS_MIN * group_count(v.lanes))
-            height = packet_push_beam(p, v.lanes, v.child, target, stack, height);
+            height = packet_push_beam(p, v.lanes, v.child, bvh, packs, stack, height);
         else
-            height = packet_push_rays(p, v.lanes, v.child, target, stack, height);
+            height = packet_push_rays(p, v.lanes, v.child, bvh, packs, stack, height);
     }
-    target->counts->node_visits += node_visits;
+    return node_visits;
 }
 
 /* A few rays of the packet, each alone. */

@@ -4,9 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/vec.h"
-
-enum { LISTINGS_PER_FACE = 32, LEAF_ITEMS_MIN = 2 };
+enum { LISTINGS_PER_BOX = 32, LEAF_ITEMS_MIN = 2 };
 
 /* In tests of a ray against a triangle. */
 static const double node_cost = 8.0;
@@ -16,7 +14,7 @@ typedef struct cell {
 } cell;
 
 typedef struct builder {
-    const fl_octree_faces *faces;
+    const fl_bvh_box *boxes;
     float pad;
     uint32_t height;
     fl_octree_node *nodes;
@@ -55,64 +53,13 @@ static cell octant(const cell *c, uint32_t k)
     return child;
 }
 
-/* --- Does a triangle overlap a box? ---------------------------------------------------------- */
-
-/* Is the box of half sides h around 0 wholly on one side of the triangle v along `axis`? Rounding,
- * relative to the products that made the axis, must not make it so. */
-static bool is_apart(fl_vec3 axis, double axis_size, const fl_vec3 v[3], fl_vec3 h)
+static bool overlaps(const builder *b, const cell *c, uint32_t item)
 {
-    double least = HUGE_VAL, most = -HUGE_VAL, size = 0.0;
-    for (int k = 0; k < 3; k++) {
-        double at = fl_v3_dot(axis, v[k]);
-        least = fl_min(at, least);
-        most = fl_max(at, most);
-        size = fl_max(fl_v3_max_abs(v[k]), size);
-    }
-    double reach = fabs(axis.x) * h.x + fabs(axis.y) * h.y + fabs(axis.z) * h.z;
-    reach += 0x1p-48 * axis_size * size;
-    return least > reach || most < -reach;
-}
-
-/* By the separating axes other than those of the box: the triangle's normal, and edges of one
- * across edges of the other. */
-static bool triangle_overlaps(const fl_vec3 v[3], fl_vec3 h)
-{
-    fl_vec3 edge[3];
-    double size[3];
-    for (int k = 0; k < 3; k++) {
-        edge[k] = fl_v3_sub(v[(k + 1) % 3], v[k]);
-        size[k] = fl_v3_max_abs(edge[k]);
-    }
-    if (is_apart(fl_v3_cross(edge[0], edge[1]), size[0] * size[1], v, h))
-        return false;
-    for (int k = 0; k < 3; k++) {
-        fl_vec3 e = edge[k];
-        if (is_apart(fl_v3(0.0, -e.z, e.y), size[k], v, h) ||
-            is_apart(fl_v3(e.z, 0.0, -e.x), size[k], v, h) ||
-            is_apart(fl_v3(-e.y, e.x, 0.0), size[k], v, h))
+    const fl_bvh_box *box = &b->boxes[item];
+    for (int a = 0; a < 3; a++)
+        if (box->lo[a] - b->pad > c->lo[a] + c->size[a] || box->hi[a] + b->pad < c->lo[a])
             return false;
-    }
     return true;
-}
-
-static bool overlaps(const builder *b, const cell *c, uint32_t face)
-{
-    const uint32_t *corner = b->faces->index + 3 * (size_t)face;
-    double mid[3], half[3], v[3][3];
-    for (int a = 0; a < 3; a++) {
-        float lo = c->lo[a] - b->pad, hi = c->lo[a] + c->size[a] + b->pad, x[3];
-        for (int k = 0; k < 3; k++)
-            x[k] = b->faces->position[3 * (size_t)corner[k] + (size_t)a];
-        if ((x[0] > hi && x[1] > hi && x[2] > hi) || (x[0] < lo && x[1] < lo && x[2] < lo))
-            return false;
-        mid[a] = 0.5 * ((double)lo + (double)hi);
-        half[a] = 0.5 * ((double)hi - (double)lo);
-        for (int k = 0; k < 3; k++)
-            v[k][a] = (double)x[k] - mid[a];
-    }
-    const fl_vec3 corners[3] = {fl_v3(v[0][0], v[0][1], v[0][2]), fl_v3(v[1][0], v[1][1], v[1][2]),
-                                fl_v3(v[2][0], v[2][1], v[2][2])};
-    return triangle_overlaps(corners, fl_v3(half[0], half[1], half[2]));
 }
 
 /* --- Cutting --------------------------------------------------------------------------------- */
@@ -175,7 +122,7 @@ static uint32_t add_node(builder *b, const cell *c)
     return (uint32_t)b->node_count++;
 }
 
-/* `budget`: listings that may come of the cell's, so that large faces do not fill memory. Recursion
+/* `budget`: listings that may come of the cell's, so that large boxes do not fill memory. Recursion
  * is bounded by the height. */
 static built build_cell(builder *b, const cell *c, const uint32_t *items, uint32_t count,
                         size_t budget, uint32_t depth)
@@ -211,18 +158,18 @@ static built build_cell(builder *b, const cell *c, const uint32_t *items, uint32
     return add_leaf(b, items, count);
 }
 
-static cell root_cell(const fl_octree_faces *faces, float pad)
+static cell root_cell(const fl_bvh_box *boxes, uint32_t count, float pad)
 {
-    cell c;
-    for (size_t a = 0; a < 3; a++) {
-        float lo = INFINITY, hi = -INFINITY;
-        for (size_t i = 0; i < 3 * (size_t)faces->count; i++) {
-            float x = faces->position[3 * (size_t)faces->index[i] + a];
-            lo = x < lo ? x : lo;
-            hi = x > hi ? x : hi;
+    fl_bvh_box all = boxes[0];
+    for (uint32_t i = 0; i < count; i++)
+        for (int a = 0; a < 3; a++) {
+            all.lo[a] = boxes[i].lo[a] < all.lo[a] ? boxes[i].lo[a] : all.lo[a];
+            all.hi[a] = boxes[i].hi[a] > all.hi[a] ? boxes[i].hi[a] : all.hi[a];
         }
-        c.lo[a] = lo - pad;
-        c.size[a] = (hi - lo) + 3.0f * pad;
+    cell c;
+    for (int a = 0; a < 3; a++) {
+        c.lo[a] = all.lo[a] - pad;
+        c.size[a] = (all.hi[a] - all.lo[a]) + 3.0f * pad;
     }
     return c;
 }
@@ -249,20 +196,19 @@ static bool settle(fl_octree *out, fl_arena *arena, const builder *b)
     return true;
 }
 
-bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_octree_faces *faces,
-                     uint32_t height, float pad)
+bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_bvh_box *boxes,
+                     uint32_t count, uint32_t height, float pad)
 {
-    FL_ASSERT(faces->count >= 1 && height >= 1 && height <= FL_OCTREE_HEIGHT_MAX);
-    uint32_t *all = malloc(faces->count * sizeof *all);
+    FL_ASSERT(count >= 1 && height >= 1 && height <= FL_OCTREE_HEIGHT_MAX);
+    uint32_t *all = malloc(count * sizeof *all);
     if (!all)
         return false;
-    for (uint32_t i = 0; i < faces->count; i++)
+    for (uint32_t i = 0; i < count; i++)
         all[i] = i;
-    builder b = {.faces = faces, .pad = pad, .height = height};
-    cell root = root_cell(faces, pad);
+    builder b = {.boxes = boxes, .pad = pad, .height = height};
+    cell root = root_cell(boxes, count, pad);
     fl_octree result = {0};
-    result.root =
-        build_cell(&b, &root, all, faces->count, (size_t)LISTINGS_PER_FACE * faces->count, 0).child;
+    result.root = build_cell(&b, &root, all, count, (size_t)LISTINGS_PER_BOX * count, 0).child;
     memcpy(result.lo, root.lo, sizeof root.lo);
     memcpy(result.size, root.size, sizeof root.size);
     bool ok = !b.failed && settle(&result, arena, &b);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Layer 3: octree over triangles by uniform subdivision: every cell is cut into eight equal ones, a
- * triangle is listed in every leaf that it overlaps, height at most 8. The classic structure of the
+ * Layer 3: octree by uniform subdivision: every cell is cut into eight equal ones, a box is listed
+ * in every leaf that it overlaps, height at most 8. The classic structure of the
  * source project, kept beside the hierarchy of boxes to compare with.
  */
 #ifndef FL_OCTREE_H
@@ -34,19 +34,10 @@ typedef struct fl_octree {
     float lo[3], size[3]; /**< The root's cell, not widened. */
 } fl_octree;
 
-/** 3 floats a position, 3 indices a face. */
-typedef struct fl_octree_faces {
-    const float *position;
-    const uint32_t *index;
-    uint32_t count;
-} fl_octree_faces;
-
-/** Build over faces, at least one, in cells widened by `pad`. A face is listed where the triangle
- * itself overlaps, not just its box [Akenine-Moller 2001], and cells are cut as long as the surface
- * area heuristic calls that cheaper; listings stay below 32 a face. False: out of memory. O(n *
- * height).
- */
-bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_octree_faces *faces,
-                     uint32_t height, float pad);
+/** Build over boxes[0 .. count), count >= 1, in cells widened by `pad`. Cells are cut as long as
+ * the surface area heuristic calls that cheaper; listings stay below 32 a box. False: out of
+ * memory. O(n * height). */
+bool fl_octree_build(fl_octree *out_octree, fl_arena *arena, const fl_bvh_box *boxes,
+                     uint32_t count, uint32_t height, float pad);
 
 #endif

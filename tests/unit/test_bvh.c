@@ -164,46 +164,12 @@ static void degenerate_boxes_stay_shallow(void **state)
 
 typedef struct octree_census {
     const fl_octree *tree;
-    const fl_octree_faces *faces;
-    double pad;
+    const fl_bvh_box *boxes;
+    uint32_t count;
+    float pad;
 } octree_census;
 
-/* Is anything left of a triangle once it is clipped by the six planes of a cell widened by `pad`?
- * [Sutherland, Hodgman 1974] */
-static bool survives_clipping(const fl_octree_faces *faces, uint32_t face, const float lo[3],
-                              const float size[3], double pad)
-{
-    double corner[12][3], clipped[12][3];
-    uint32_t count = 3;
-    for (uint32_t k = 0; k < 3; k++) {
-        const float *p = faces->position + 3 * (size_t)faces->index[3 * (size_t)face + k];
-        for (int a = 0; a < 3; a++)
-            corner[k][a] = (double)p[a];
-    }
-    for (int side = 0; side < 6; side++) {
-        int a = side / 2;
-        double way = side % 2 ? -1.0 : 1.0, begin = (double)lo[a], end = begin + (double)size[a];
-        double edge = side % 2 ? end + pad : begin - pad;
-        uint32_t left = 0;
-        for (uint32_t k = 0; k < count; k++) {
-            const double *p = corner[k], *q = corner[(k + 1) % count];
-            double dp = way * (p[a] - edge), dq = way * (q[a] - edge);
-            if (dp >= 0.0)
-                memcpy(clipped[left++], p, sizeof *clipped);
-            if ((dp > 0.0 && dq < 0.0) || (dp < 0.0 && dq > 0.0)) {
-                for (int x = 0; x < 3; x++)
-                    clipped[left][x] = p[x] + dp / (dp - dq) * (q[x] - p[x]);
-                left++;
-            }
-        }
-        memcpy(corner, clipped, sizeof corner);
-        count = left;
-    }
-    return count > 0;
-}
-
-/* A leaf lists the triangles that overlap its widened cell and no others, in ascending order; in
- * between, within rounding, either is right. */
+/* A leaf lists exactly the widened boxes that overlap its cell, in ascending order. */
 static void visit_cell(const octree_census *c, uint32_t child, const float lo[3],
                        const float size[3])
 {
@@ -215,49 +181,28 @@ static void visit_cell(const octree_census *c, uint32_t child, const float lo[3]
                 uint32_t is_upper = k >> a & 1u;
                 half[a] = 0.5f * size[a];
                 sub_lo[a] = is_upper ? lo[a] + half[a] : lo[a];
-                assert_true(node->plane[a][is_upper] == sub_lo[a] - (float)c->pad);
-                assert_true(node->plane[a][is_upper + 2] == sub_lo[a] + half[a] + (float)c->pad);
+                assert_true(node->plane[a][is_upper] == sub_lo[a] - c->pad);
+                assert_true(node->plane[a][is_upper + 2] == sub_lo[a] + half[a] + c->pad);
             }
             visit_cell(c, node->child[k], sub_lo, half);
         }
         return;
     }
     const fl_octree_leaf *leaf = child == FL_NONE ? NULL : &c->tree->leaves[child & ~FL_BVH_LEAF];
-    const uint32_t *item = leaf ? c->tree->items + leaf->first : NULL, *end = item;
-    end = leaf ? item + leaf->count : item;
-    for (uint32_t i = 0; i < c->faces->count; i++) {
-        bool is_listed = item != end && *item == i;
-        item += is_listed;
-        if (is_listed)
-            assert_true(survives_clipping(c->faces, i, lo, size, 1.01 * c->pad));
-        else
-            assert_false(survives_clipping(c->faces, i, lo, size, 0.99 * c->pad));
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < c->count; i++) {
+        bool overlaps = true;
+        for (int a = 0; a < 3; a++)
+            overlaps &= c->boxes[i].lo[a] - c->pad <= lo[a] + size[a] &&
+                        c->boxes[i].hi[a] + c->pad >= lo[a];
+        if (overlaps) {
+            assert_non_null(leaf);
+            assert_true(found < leaf->count);
+            assert_int_equal(c->tree->items[leaf->first + found], i);
+            found++;
+        }
     }
-    assert_true(item == end);
-}
-
-/* Triangles with corners in the boxes, some of them slivers. */
-static fl_octree_faces random_faces(uint32_t count, uint64_t seed, float size)
-{
-    fl_bvh_box *boxes = random_boxes(count, seed, size);
-    float *position = calloc(9 * (size_t)count, sizeof *position);
-    uint32_t *index = calloc(3 * (size_t)count, sizeof *index);
-    assert_true(position && index);
-    for (uint32_t i = 0; i < 3 * count; i++) {
-        const fl_bvh_box *box = &boxes[i / 3];
-        uint32_t k = i % 3, side = i / 3 % 5 == 0 ? k / 2 * 7 : 1u << k;
-        index[i] = i;
-        for (uint32_t a = 0; a < 3; a++)
-            position[3 * (size_t)i + a] = side >> a & 1u ? box->hi[a] : box->lo[a];
-    }
-    free(boxes);
-    return (fl_octree_faces){position, index, count};
-}
-
-static void free_faces(fl_octree_faces *faces)
-{
-    free((void *)(uintptr_t)faces->position);
-    free((void *)(uintptr_t)faces->index);
+    assert_int_equal(found, leaf ? leaf->count : 0);
 }
 
 static void octree_leaves_list_what_overlaps(void **state)
@@ -266,31 +211,31 @@ static void octree_leaves_list_what_overlaps(void **state)
     (void)state;
     for (size_t k = 0; k < FL_COUNT_OF(counts); k++)
         for (uint32_t height = 1; height <= 4; height += 3) {
-            fl_octree_faces faces = random_faces(counts[k], 40 + k, 0.1f);
+            fl_bvh_box *boxes = random_boxes(counts[k], 40 + k, 0.1f);
             fl_arena arena = {0};
             fl_octree tree;
-            assert_true(fl_octree_build(&tree, &arena, &faces, height, 1e-3f));
-            octree_census c = {&tree, &faces, 1e-3};
+            assert_true(fl_octree_build(&tree, &arena, boxes, counts[k], height, 1e-4f));
+            octree_census c = {&tree, boxes, counts[k], 1e-4f};
             visit_cell(&c, tree.root, tree.lo, tree.size);
             if (counts[k] == 1500 && height == 4)
-                assert_true(tree.node_count > 1 && tree.item_count < 20 * counts[k]);
+                assert_true(tree.node_count > 1);
             fl_arena_deinit(&arena);
-            free_faces(&faces);
+            free(boxes);
         }
 }
 
-/* Large triangles overlap many cells: cutting must give up before memory does. */
-static void octree_of_overlapping_triangles_stays_small(void **state)
+/* Large boxes overlap nearly every cell: cutting must give up before memory does. */
+static void octree_of_overlapping_boxes_stays_small(void **state)
 {
     enum { COUNT = 5000 };
     (void)state;
-    fl_octree_faces faces = random_faces(COUNT, 3, 1.0f);
+    fl_bvh_box *boxes = random_boxes(COUNT, 3, 1.0f);
     fl_arena arena = {0};
     fl_octree tree;
-    assert_true(fl_octree_build(&tree, &arena, &faces, 8, 0.0f));
+    assert_true(fl_octree_build(&tree, &arena, boxes, COUNT, 8, 0.0f));
     assert_true(tree.item_count <= 32u * COUNT);
     fl_arena_deinit(&arena);
-    free_faces(&faces);
+    free(boxes);
 }
 
 int main(void)
@@ -300,7 +245,7 @@ int main(void)
         cmocka_unit_test(threads_do_not_change_the_tree),
         cmocka_unit_test(degenerate_boxes_stay_shallow),
         cmocka_unit_test(octree_leaves_list_what_overlaps),
-        cmocka_unit_test(octree_of_overlapping_triangles_stays_small),
+        cmocka_unit_test(octree_of_overlapping_boxes_stays_small),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
