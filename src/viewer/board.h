@@ -8,7 +8,7 @@
 
 #include "viewer/overlay.h"
 
-enum { VW_BOARD_ROWS = 24, VW_BOARD_LABEL = 80, VW_BOARD_VALUE = 64, VW_PLOT_POINTS = 32 };
+enum { VW_BOARD_ROWS = 24, VW_BOARD_LABEL = 128, VW_BOARD_VALUE = 144, VW_PLOT_POINTS = 32 };
 
 typedef struct vw_board_row {
     char label[VW_BOARD_LABEL], value[VW_BOARD_VALUE];

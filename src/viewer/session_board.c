@@ -76,7 +76,8 @@ static void put_plan(const vw_session *session, const fl_frame *frame, vw_board 
     double dimensions =
         counts->samples ? (double)counts->sample_dimensions / (double)counts->samples : 0.0;
     static const char *const accels[] = {"bvh", "octree", "no tree"};
-    vw_board_note(board, "%.3g dimensions a sample; %u shadow rays a hit", dimensions, samples);
+    vw_board_note(board, "%.3g dimensions a sample; %u shadow ray%s a hit", dimensions, samples,
+                  samples == 1 ? "" : "s");
     vw_board_note(board, "kernels %s, %s", fl_isa_name(scene->isa), accels[scene->geometry.accel]);
 }
 
@@ -172,7 +173,7 @@ static void put_forecast(const vw_session *session, vw_board *board)
 {
     const fl_progress *progress = &session->progress;
     fl_error_forecast forecast;
-    char error[24], target[24], t0[24], t1[24], t2[24];
+    char error[24], target[24], t0[24], between[64];
     if (!progress->error.is_known) {
         vw_board_note(board, "error known from 4 samples on");
         return;
@@ -186,9 +187,8 @@ static void put_forecast(const vw_session *session, vw_board *board)
     double second = progress->seconds / progress->mean_samples;
     vw_words_percent(goal, target);
     vw_words_duration(forecast.samples * second, t0);
-    vw_words_duration(forecast.low * second, t1);
-    vw_words_duration(forecast.high * second, t2);
-    vw_board_add(board, -1.0, "half that", "%s after %s (%s\342\200\223%s)", target, t0, t1, t2);
+    vw_words_between(forecast.low * second, forecast.high * second, between);
+    vw_board_add(board, -1.0, "half that", "%s after %s (%s)", target, t0, between);
 }
 
 /* Cost, error and time to the same error against the present setting; a change of depth is one of
@@ -235,7 +235,6 @@ static void trade_board(const vw_session *session, vw_board *board)
     const fl_error_estimate *error = &session->progress.error;
     vw_plot *plot = &board->plot;
     snprintf(board->title, sizeof board->title, "trade: error against time");
-    board->has_plot = true;
     snprintf(plot->x_unit, sizeof plot->x_unit, "s");
     snprintf(plot->y_unit, sizeof plot->y_unit, "error %%");
     for (uint32_t i = 0; i < insight->way_count && plot->count < VW_PLOT_POINTS; i++) {
@@ -249,10 +248,11 @@ static void trade_board(const vw_session *session, vw_board *board)
         plot->x[plot->count] = here.seconds;
         plot->y[plot->count++] = here.rmse;
     }
+    board->has_plot = plot->count > 0;
     plot->has_forecast = error->is_known;
     plot->rate = error->exponent;
-    plot->slow = RATE_SLOW;
-    plot->fast = RATE_FAST;
+    plot->slow = fl_min(RATE_SLOW, error->exponent);
+    plot->fast = fl_max(RATE_FAST, error->exponent);
     plot->end_x = AHEAD * here.seconds;
     put_forecast(session, board);
     if (!vw_insight_has(insight, VW_LAB_TRIALS) || answer->error[0]) {

@@ -145,7 +145,7 @@ static void error_items(const fl_progress *progress, vw_status *out, uint32_t *c
         snprintf(s->value, sizeof s->value, "n/a");
         return;
     }
-    char value[24], when[3][24];
+    char value[24], when[24], between[64];
     vw_words_percent(error->rmse, value);
     snprintf(s->value, sizeof s->value, "%s \302\261 %.1g", value,
              50.0 * (error->high - error->low));
@@ -154,12 +154,13 @@ static void error_items(const fl_progress *progress, vw_status *out, uint32_t *c
     if (progress->state == FL_RENDER_DONE || !(progress->mean_samples > 0.0) ||
         !fl_error_predict(error, goal, &forecast))
         return;
-    const double samples[3] = {forecast.samples, forecast.low, forecast.high};
-    for (int i = 0; i < 3; i++)
-        vw_words_duration(fl_max(samples[i] - progress->mean_samples, 0.0) * second, when[i]);
+    double done = progress->mean_samples;
+    vw_words_duration(fl_max(forecast.samples - done, 0.0) * second, when);
+    vw_words_between(fl_max(forecast.low - done, 0.0) * second,
+                     fl_max(forecast.high - done, 0.0) * second, between);
     vw_words_percent(goal, value);
     s = item(out, count, value);
-    snprintf(s->value, sizeof s->value, "in %s (%s\342\200\223%s)", when[0], when[1], when[2]);
+    snprintf(s->value, sizeof s->value, "in %s (%s)", when, between);
 }
 
 static void work_items(const vw_state *state, const fl_progress *progress, vw_status *out,
@@ -223,12 +224,23 @@ void vw_words_duration(double seconds, char out[24])
 {
     if (seconds < 9.95)
         snprintf(out, 24, "%.1f s", seconds);
-    else if (seconds < 99.5)
+    else if (seconds < 299.5)
         snprintf(out, 24, "%.0f s", seconds);
     else if (seconds < 99.5 * 60.0)
         snprintf(out, 24, "%.0f min", seconds / 60.0);
     else
         snprintf(out, 24, seconds < 3600.0 * 1e4 ? "%.3g h" : "never", seconds / 3600.0);
+}
+
+void vw_words_between(double low_seconds, double high_seconds, char out[64])
+{
+    char low[24], high[24];
+    vw_words_duration(low_seconds, low);
+    vw_words_duration(high_seconds, high);
+    char *unit = strchr(low, ' '), *other = strchr(high, ' ');
+    if (unit && other && strcmp(unit, other) == 0)
+        *unit = 0;
+    snprintf(out, 64, "%s\342\200\223%s", low, high);
 }
 
 double vw_words_done(const vw_state *state, const fl_progress *progress)

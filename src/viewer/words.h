@@ -17,7 +17,7 @@ void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW
 
 /** One item of the status line: a dim label (may be empty) and a bright value. */
 typedef struct vw_status {
-    char label[24], value[80];
+    char label[24], value[112];
     bool is_alarm;
 } vw_status;
 
@@ -29,6 +29,9 @@ uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
 void vw_words_percent(double value, char out[24]);
 /** "0.3 s", "14 s", "3 min", "2.1 h". */
 void vw_words_duration(double seconds, char out[24]);
+
+/** "11–19 s", "50 s–2 min". */
+void vw_words_between(double low_seconds, double high_seconds, char out[64]);
 
 /** Part of the work that is done, 0 to 1. */
 double vw_words_done(const vw_state *state, const fl_progress *progress);
