@@ -157,10 +157,10 @@ static void put_node_short(writer *w, uint32_t index)
     char name[160] = "background";
     if (node->object != FL_NONE)
         fl_object_text(w->frame->scene, node->object, name, sizeof name);
-    put(w, "%*s%s: %s, adds", 2 * (int)node->level, "", fl_ray_kind_names[node->kind], name);
+    put(w, "%*s%s: %s +", (int)node->level, "", fl_ray_kind_names[node->kind], name);
     put_sum(w, node);
     if (node->light_count)
-        put(w, ", lights %u/%u", lit, node->light_count);
+        put(w, " lights %u/%u", lit, node->light_count);
     put(w, "\n");
 }
 

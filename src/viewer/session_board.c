@@ -165,7 +165,8 @@ static void needs_board(const vw_session *session, const fl_frame *frame, vw_boa
         const vw_trial *trial = &answer->trials[i];
         double saved = 1.0 - trial->cpu_seconds / now->cpu_seconds;
         vw_board_add(board, fl_max(saved, 0.0), trial->name, "%.0f %%, %.0f %%",
-                     100.0 * fl_max(saved, 0.0), 100.0 * (1.0 - trial->rays / now->rays));
+                     100.0 * fl_max(saved, 0.0),
+                     100.0 * fl_max(1.0 - trial->rays / now->rays, 0.0));
     }
 }
 

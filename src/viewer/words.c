@@ -277,6 +277,18 @@ static void add_strips(buffer *b)
         {"compare", "A picture is pinned (V) and the lens opened; wipe at the cursor and signed "
                     "difference (Shift+V)."},
         {"views", "Behind the picture: depth (F3), normals (F4), cost (F8), blur (F9)."},
+        {"branches",
+         "And albedo (F5), error (F7), objects (F10), the ray that adds most (Shift+F8)."},
+        {"mirror", "Focus on the vase, on what stands in one mirror, and farther, in two "
+                   "(Ctrl+Shift+click)."},
+        {"rays",
+         "The pixel under the cursor (I), and all rays of one of its samples (Ctrl+click); the "
+         "terminal gets every number."},
+        {"noise", "Where the noise comes from (N), and what the scene needs and that costs (M)."},
+        {"trade", "Error against time (T): the way so far, the forecast, and one step of each knob "
+                  "as measured; l2 is two light samples."},
+        {"stress", "The stress lens (J): the scene a thousandth of its size, a million times, and "
+                   "through a pinhole. Violet changed in last bits only, orange visibly."},
     };
     add(b, "\n## In pictures\n\nEach strip is made by a log of input, which `firstlight replay` "
            "plays (tools/make-strips).\n");

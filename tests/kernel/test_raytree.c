@@ -177,8 +177,8 @@ static void the_text_says_what_happened(void **state)
     assert_non_null(strstr(text, "pixel 0 0, sample 0: 0.125 0.125 0.125, the sum of 2 rays"));
     fl_raytree_text(frame, &tree, true, text, sizeof text);
     assert_non_null(strstr(text, "\ncamera: plane 1, "));
-    assert_non_null(strstr(text, "adds 0.125, lights 0/1\n"));
-    assert_non_null(strstr(text, "\n  reflect: background, adds 0\n"));
+    assert_non_null(strstr(text, " + 0.125 lights 0/1\n"));
+    assert_non_null(strstr(text, "\n reflect: background + 0\n"));
     assert_int_equal(fl_raytree_heaviest(&tree), 0);
     /* Cut short, never beyond the end. */
     char small[40];
