@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "cli/commands.h"
 #include "cli/study_write.h"
@@ -62,8 +63,10 @@ static void print_summary(const study_report *report)
     const study *s = report->s;
     double targets[8];
     uint32_t count = study_targets(report->table, report->wanted_rmse, targets);
+    char sentence[STUDY_SENTENCE_BYTES];
+    study_summary(s, report->table, sentence, sizeof sentence);
+    puts(sentence);
     for (uint32_t i = 0; i < count; i++) {
-        char sentence[320];
         study_sentence(s, report->table, targets[i], sentence, sizeof sentence);
         puts(sentence);
     }
@@ -120,6 +123,16 @@ static bool run(const cli_options *o, cli_scene *scene, uint32_t knobs, study *s
     return ok;
 }
 
+static int unknown_knob(const char *word)
+{
+    char names[STUDY_KNOB_COUNT * STUDY_NAME_BYTES] = "";
+    for (uint32_t i = STUDY_BASELINE + 1; i < STUDY_KNOB_COUNT; i++) {
+        strcat(names, i > STUDY_BASELINE + 1 ? ", " : "");
+        strcat(names, study_knob_names[i]);
+    }
+    return cli_usage_error(CLI_STUDY, "unknown knob '%s' in --sweep; there are %s", word, names);
+}
+
 int cli_command_study(const cli_options *options)
 {
     if (options->path_count != 1)
@@ -129,10 +142,7 @@ int cli_command_study(const cli_options *options)
     uint32_t knobs = ~0u;
     char word[STUDY_NAME_BYTES];
     if (options->sweep && !study_knobs_parse(options->sweep, &knobs, word))
-        return cli_usage_error(CLI_STUDY,
-                               "unknown knob '%s' in --sweep; there are sampler, light-samples, "
-                               "depth, weight-threshold, scale, accel, revolve-solver",
-                               word);
+        return unknown_knob(word);
     cli_catch_signals();
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/study_config.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,6 +14,9 @@ enum {
 const char *const study_knob_names[STUDY_KNOB_COUNT] = {
     "baseline",         "sampler", "light-samples", "depth",
     "weight-threshold", "scale",   "accel",         "revolve-solver"};
+
+static const char *const sampler_names[] = {"sobol", "random", "padded"};
+static const char *const accel_names[] = {"bvh", "octree", "none"};
 
 bool study_knobs_parse(const char *text, uint32_t *out_knobs, char word[STUDY_NAME_BYTES])
 {
@@ -60,10 +64,9 @@ static study_config *add(study_plan *plan, study_knob knob, const char *value)
 
 static void add_samplers(study_plan *plan)
 {
-    static const char *const names[] = {"sobol", "random", "padded"};
-    for (uint32_t i = 0; i < FL_COUNT_OF(names); i++)
+    for (uint32_t i = 0; i < FL_COUNT_OF(sampler_names); i++)
         if (i != plan->configs[0].params.sampler)
-            add(plan, STUDY_SAMPLER, names[i])->params.sampler = (fl_sampler)i;
+            add(plan, STUDY_SAMPLER, sampler_names[i])->params.sampler = (fl_sampler)i;
 }
 
 static void add_light_samples(study_plan *plan, const cli_scene *scene)
@@ -163,13 +166,20 @@ static bool add_accels(study_plan *plan, const cli_scene *scene, uint32_t thread
     return ok;
 }
 
+static void solver_text(fl_revolve_solver solver, char out[24])
+{
+    if (solver == FL_REVOLVE_ROBUST)
+        snprintf(out, 24, "robust");
+    else
+        snprintf(out, 24, "newton-%u", solver);
+}
+
 static void add_solvers(study_plan *plan)
 {
     static const fl_revolve_solver values[] = {FL_REVOLVE_ROBUST, 2, 4, FL_REVOLVE_NEWTON, 16};
     for (uint32_t i = 0; i < FL_COUNT_OF(values); i++) {
-        char text[24] = "robust";
-        if (values[i] != FL_REVOLVE_ROBUST)
-            snprintf(text, sizeof text, "newton-%u", values[i]);
+        char text[24];
+        solver_text(values[i], text);
         if (values[i] == plan->configs[0].params.solver)
             continue;
         study_config *c = add(plan, STUDY_SOLVER, text);
@@ -203,6 +213,51 @@ bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_m
         add_solvers(out_plan);
     bool has_mesh = needs & FL_NEED_TRIANGLES;
     return !(knobs >> STUDY_ACCEL & 1u) || !has_mesh || add_accels(out_plan, scene, threads);
+}
+
+/* 1/1024 rather than 0.0009765625. */
+static void threshold_text(double value, char out[24])
+{
+    double inverse = value > 0.0 ? 1.0 / value : 0.0;
+    if (inverse >= 2.0 && inverse == floor(inverse))
+        snprintf(out, 24, "1/%.0f", inverse);
+    else
+        snprintf(out, 24, "%g", value);
+}
+
+void study_own_name(const study_plan *plan, study_knob knob, char *out, size_t bytes)
+{
+    const study_config *base = &plan->configs[0];
+    const fl_params *p = &base->params;
+    char text[24] = "the scene's";
+    switch (knob) {
+    case STUDY_SAMPLER:
+        snprintf(text, sizeof text, "%s", sampler_names[p->sampler]);
+        break;
+    case STUDY_LIGHT_SAMPLES:
+        if (p->light_samples)
+            snprintf(text, sizeof text, "%u", p->light_samples);
+        break;
+    case STUDY_DEPTH:
+        snprintf(text, sizeof text, "%u", p->depth_limit);
+        break;
+    case STUDY_WEIGHT:
+        threshold_text(p->weight_threshold, text);
+        break;
+    case STUDY_SCALE:
+        snprintf(text, sizeof text, "1");
+        break;
+    case STUDY_ACCEL:
+        snprintf(text, sizeof text, "%s", accel_names[base->compiled->geometry.accel]);
+        break;
+    case STUDY_SOLVER:
+        solver_text(p->solver, text);
+        break;
+    default:
+        snprintf(out, bytes, "as asked for");
+        return;
+    }
+    snprintf(out, bytes, "%s=%s", study_knob_names[knob], text);
 }
 
 void study_plan_close(study_plan *plan)

@@ -50,6 +50,9 @@ bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_m
                       uint32_t threads, study_plan *out_plan);
 void study_plan_close(study_plan *plan);
 
+/** The baseline's own value of a knob, as a name: "depth=5". */
+void study_own_name(const study_plan *plan, study_knob knob, char *out, size_t bytes);
+
 /** Whether depth and weight threshold can decide anything in this scene. */
 bool study_has_branches(const fl_compiled *compiled);
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/study_run.h"
+#include "cli/study_work.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,18 +8,26 @@
 #include <time.h>
 #include <unistd.h>
 
-enum {
-    REFERENCE_FIRST = 4,   /* Times the samples of the longest curve. */
-    SEED_REFERENCE = 1000, /* Seeds of rounds are below. */
-};
-#define REFERENCE_SHARE 0.1 /* Of the best measured RMSE: the aim. */
-#define BUDGET_SHARE    0.5 /* The most of the budget that references take. */
+enum { SEED_WARM_UP = 999, LOAD_BYTES = 64 }; /* Seeds of rounds are below. */
 
-static double now_s(void)
+double study_now_s(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
     return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+double study_load_average(void)
+{
+    char text[LOAD_BYTES];
+    double load = -1.0;
+    FILE *file = fopen("/proc/loadavg", "r");
+    if (!file)
+        return load;
+    if (fgets(text, sizeof text, file) && !fl_number_parse(text, text + strlen(text), &load))
+        load = -1.0;
+    fclose(file);
+    return load;
 }
 
 static uint32_t log2_of(uint32_t x)
@@ -46,39 +54,73 @@ const study_measure *study_at(const study *s, uint32_t config, uint32_t round, u
 }
 
 /* True: stop now, and why is noted. `share`: of the budget that may be used up. */
-static bool should_stop(study *s, double begin_s, double share)
+static bool should_stop(study *s, double share)
 {
     if (s->settings.should_stop && s->settings.should_stop())
         s->was_interrupted = true;
-    bool is_over = s->settings.budget_s > 0.0 && now_s() - begin_s > share * s->settings.budget_s;
-    if (is_over && share == 1.0)
+    bool is_over =
+        s->settings.budget_s > 0.0 && study_now_s() - s->begin_s > share * s->settings.budget_s;
+    if (is_over && share == STUDY_WHOLE_BUDGET)
         s->ran_out_of_budget = true;
     return s->was_interrupted || is_over;
 }
 
+/* --- Progress --------------------------------------------------------------------------------- */
+
+void study_stage_begin(study *s, double total)
+{
+    s->stage = (study_stage){.begin_s = study_now_s(), .total = total};
+}
+
+void study_stage_set(study *s, const char *what, double done, double part)
+{
+    s->stage.done = done;
+    s->stage.part = part;
+    snprintf(s->stage.what, sizeof s->stage.what, "%s", what);
+}
+
+/* share: of the part that is being rendered. */
+static void show(const study *s, double share)
+{
+    const study_stage *t = &s->stage;
+    if (!s->settings.shows_progress || !(t->total > 0.0))
+        return;
+    double done = fl_clamp((t->done + share * t->part) / t->total, 0.0, 1.0);
+    double gone = study_now_s() - t->begin_s;
+    char bar[25], left[48] = "";
+    for (uint32_t i = 0; i < 24; i++)
+        bar[i] = i < 24.0 * done ? '#' : '.';
+    bar[24] = 0;
+    if (done > 0.02)
+        snprintf(left, sizeof left, ", about %.0f s left", gone / done * (1.0 - done));
+    fprintf(stderr, "\r[%s] %3.0f %% %s%s\033[K", bar, 100.0 * done, t->what, left);
+}
+
 /* --- One render ------------------------------------------------------------------------------- */
 
-typedef enum outcome { REACHED, STOPPED, FAILED } outcome;
-
-static outcome render_to(study *s, fl_render *render, uint32_t samples, double begin_s,
-                         double share, fl_progress *out_progress)
+study_outcome study_render_to(study *s, fl_render *render, uint32_t samples, double share,
+                              fl_progress *out_progress)
 {
-    if (should_stop(s, begin_s, share))
-        return STOPPED;
+    if (should_stop(s, share))
+        return STUDY_STOPPED;
+    fl_render_progress(render, out_progress);
+    double from = fl_min(out_progress->mean_samples, samples - 1.0);
+    show(s, 0.0);
     fl_render_set_limits(render, &(fl_render_limits){.samples = samples});
     while (!fl_render_wait(render, 0.1)) {
         fl_render_progress(render, out_progress);
         if (out_progress->state == FL_RENDER_FAILED) {
             fl_out_of_memory(s->scene->diags, "rendering");
-            return FAILED;
+            return STUDY_FAILED;
         }
-        if (should_stop(s, begin_s, share)) {
+        show(s, fl_max(0.0, out_progress->mean_samples - from) / (samples - from));
+        if (should_stop(s, share)) {
             fl_render_set_paused(render, true);
-            return STOPPED;
+            return STUDY_STOPPED;
         }
     }
     fl_render_progress(render, out_progress);
-    return REACHED;
+    return STUDY_REACHED;
 }
 
 /* The picture in the full size: in `out` directly, or by way of scratch. */
@@ -126,105 +168,6 @@ static bool add_last(study *s, uint32_t index)
     return add_to_sum(s, &s->differences[index], picture, s->shift[0], s->shift[1]);
 }
 
-/* --- References ------------------------------------------------------------------------------- */
-
-static bool reference_open(study *s, const fl_params *params, study_reference *r)
-{
-    r->best = (double)INFINITY;
-    for (uint32_t i = 0; i < 2; i++) {
-        fl_render_options options = {.thread_count = s->settings.threads};
-        fl_params p = *params;
-        p.sampler = FL_SAMPLER_SOBOL;
-        p.seed = fl_hash_step(params->seed, SEED_REFERENCE + i);
-        r->renders[i] = fl_render_create(&options, s->scene->diags);
-        r->rgb[i] = malloc((size_t)3 * s->width * s->height * sizeof(float));
-        if (!r->rgb[i])
-            return fl_out_of_memory(s->scene->diags, "the references");
-        if (!r->renders[i])
-            return false;
-        fl_render_set_limits(r->renders[i], &(fl_render_limits){.samples = 1});
-        if (!fl_render_restart(r->renders[i], s->scene->compiled, &p, s->scene->diags))
-            return false;
-    }
-    return true;
-}
-
-static void reference_close(study_reference *r)
-{
-    for (uint32_t i = 0; i < 2; i++) {
-        fl_render_destroy(r->renders[i]);
-        free(r->rgb[i]);
-    }
-    *r = (study_reference){0};
-}
-
-static outcome reference_render(study *s, study_reference *r, uint32_t samples, double begin_s,
-                                double share)
-{
-    uint64_t dropped = 0;
-    for (uint32_t i = 0; i < 2; i++) {
-        fl_progress p;
-        outcome o = render_to(s, r->renders[i], samples, begin_s, share, &p);
-        if (o != REACHED)
-            return o;
-        dropped += p.counts.dropped_branches;
-    }
-    r->dropped_branches = dropped;
-    return REACHED;
-}
-
-static bool reference_take(study *s, study_reference *r, uint32_t samples)
-{
-    size_t pixels = (size_t)s->width * s->height;
-    for (uint32_t i = 0; i < 2; i++) {
-        fl_progress p;
-        if (!fl_render_mean(r->renders[i], r->rgb[i], 3 * pixels, &p))
-            return fl_environment_error(s->scene->diags, "nothing was rendered");
-    }
-    r->samples = samples;
-    r->rmse = sqrt(study_reference_mse(r->rgb[0], r->rgb[1], pixels));
-    return true;
-}
-
-/* All references to `samples`: with the same samples in both truths their difference is known much
- * better than either. STOPPED leaves them as they were. */
-static outcome references_grow(study *s, uint32_t samples, double begin_s, double share)
-{
-    if (s->settings.shows_progress)
-        fprintf(stderr, "\rreferences: %u samples ...                              ", samples);
-    outcome o = reference_render(s, &s->own, samples, begin_s, share);
-    if (o == REACHED && s->has_deep)
-        o = reference_render(s, &s->deep, samples, begin_s, share);
-    if (o != REACHED)
-        return o;
-    bool ok = reference_take(s, &s->own, samples) &&
-              (!s->has_deep || reference_take(s, &s->deep, samples));
-    return ok ? REACHED : FAILED;
-}
-
-static uint32_t reference_limit(const study *s)
-{
-    uint32_t factor = s->settings.reference_factor;
-    return s->settings.samples_max * (factor ? factor : STUDY_REFERENCE_FACTOR);
-}
-
-static bool is_good(const study_reference *r)
-{
-    return r->rmse <= REFERENCE_SHARE * r->best;
-}
-
-/* Double until they are good enough, the most is reached, or half the budget is gone. */
-static bool references_finish(study *s, double begin_s)
-{
-    while (!(is_good(&s->own) && (!s->has_deep || is_good(&s->deep))) &&
-           s->own.samples < reference_limit(s)) {
-        outcome o = references_grow(s, 2 * s->own.samples, begin_s, BUDGET_SHARE);
-        if (o != REACHED)
-            return o == STOPPED;
-    }
-    return true;
-}
-
 /* --- Runs ------------------------------------------------------------------------------------- */
 
 static void measure(study *s, const study_config *config, const float *picture,
@@ -242,68 +185,87 @@ static void measure(study *s, const study_config *config, const float *picture,
     if (s->has_deep && !config->is_biased)
         study_error_measure(picture, s->own.rgb[0], s->own.rgb[1], pixels, s->scratch[2],
                             &out->noise);
+    if (s->flip)
+        out->flip = study_flip_mean(s->flip, picture);
+}
+
+/* What the references have to be good for. */
+static void note_best(study *s, const study_config *config, const study_measure *m)
+{
+    if (m->error.mse > 0.0)
+        s->deep.best = fl_min(s->deep.best, sqrt(m->error.mse));
+    if (m->noise.mse > 0.0 && !config->is_biased)
+        s->own.best = fl_min(s->own.best, sqrt(m->noise.mse));
 }
 
 /* One curve. round: settings.repeats stands for the warm-up, which is measured for the references'
  * sake only. */
-static outcome run_curve(study *s, uint32_t index, uint32_t round, double begin_s)
+static study_outcome run_curve(study *s, uint32_t index, uint32_t round)
 {
     const study_config *config = &s->plan.configs[index];
     bool is_warm_up = round == s->settings.repeats;
     fl_params params = config->params;
-    params.seed = fl_hash_step(params.seed, is_warm_up ? SEED_REFERENCE - 1 : round);
+    params.seed = fl_hash_step(params.seed, is_warm_up ? SEED_WARM_UP : round);
     fl_render_set_paused(s->render, false);
     fl_render_set_limits(s->render, &(fl_render_limits){.samples = 1});
     if (!fl_render_restart(s->render, config->compiled, &params, s->scene->diags))
-        return FAILED;
+        return STUDY_FAILED;
+    double load = study_load_average();
     for (uint32_t level = 0; level < study_levels_of(config); level++) {
         fl_progress p;
-        outcome o = render_to(s, s->render, 1u << level, begin_s, 1.0, &p);
-        if (o != REACHED)
+        study_outcome o = study_render_to(s, s->render, 1u << level, STUDY_WHOLE_BUDGET, &p);
+        if (o != STUDY_REACHED)
             return o;
         if (!take(s, s->render, config, s->scratch[0]))
-            return FAILED;
+            return STUDY_FAILED;
         study_measure m;
         measure(s, config, s->scratch[0], &p, &m);
+        m.load = load;
         if (is_warm_up) {
-            if (m.error.mse > 0.0)
-                s->deep.best = fl_min(s->deep.best, sqrt(m.error.mse));
-            if (m.noise.mse > 0.0 && !config->is_biased)
-                s->own.best = fl_min(s->own.best, sqrt(m.noise.mse));
+            note_best(s, config, &m);
             continue;
         }
         *slot(s, index, round, level) = m;
         if (level + 1 == study_levels_of(config) && !add_last(s, index))
-            return FAILED;
+            return STUDY_FAILED;
     }
-    return REACHED;
+    return STUDY_REACHED;
 }
 
-static void show_runs(const study *s, uint32_t done, double runs_begin_s)
+/* All configurations once. `expected`: seconds that each will take, NULL: not known. `before`: what
+ * was expected of the rounds that are done. out_seconds: what each took. */
+static study_outcome run_round(study *s, uint32_t round, const double *expected, double before,
+                               double *out_seconds)
 {
-    uint32_t total = s->plan.count * (s->settings.repeats + 1);
-    double gone = now_s() - runs_begin_s, left = done ? gone / done * (total - done) : 0.0;
-    char bar[31];
-    for (uint32_t i = 0; i < 30; i++)
-        bar[i] = i < 30 * done / total ? '#' : '.';
-    bar[30] = 0;
-    fprintf(stderr, "\r[%s] %u of %u runs, about %.0f s left      ", bar, done, total, left);
+    char number[40] = "warm-up", what[STUDY_NAME_BYTES + 48];
+    if (round < s->settings.repeats)
+        snprintf(number, sizeof number, "round %u of %u", round + 1, s->settings.repeats);
+    for (uint32_t i = 0; i < s->plan.count; i++) {
+        double begin_s = study_now_s(), part = expected ? expected[i] : 1.0;
+        snprintf(what, sizeof what, "%s, %s", number, s->plan.configs[i].name);
+        study_stage_set(s, what, before, 0.0);
+        study_outcome o = run_curve(s, i, round);
+        if (o != STUDY_REACHED)
+            return o;
+        before += part;
+        if (out_seconds)
+            out_seconds[i] = study_now_s() - begin_s;
+    }
+    return STUDY_REACHED;
 }
 
-/* All configurations in turn, `count` rounds from `first` on. False: an error. */
-static bool run_rounds(study *s, uint32_t first, uint32_t count, double begin_s)
+/* All configurations in turn, as often as asked for. False: an error. */
+static bool run_rounds(study *s, const double *expected)
 {
-    double runs_begin_s = now_s();
-    for (uint32_t round = first; round < first + count; round++) {
-        for (uint32_t i = 0; i < s->plan.count; i++) {
-            if (s->settings.shows_progress)
-                show_runs(s, (round - first) * s->plan.count + i, runs_begin_s);
-            outcome o = run_curve(s, i, round, begin_s);
-            if (o != REACHED)
-                return o == STOPPED;
-        }
-        if (round < s->settings.repeats)
-            s->rounds = round + 1;
+    double round_s = 0.0;
+    for (uint32_t i = 0; i < s->plan.count; i++)
+        round_s += expected ? expected[i] : 1.0;
+    study_stage_begin(s, round_s * s->settings.repeats);
+    for (uint32_t round = 0; round < s->settings.repeats; round++) {
+        study_outcome o = run_round(s, round, expected, round_s * round, NULL);
+        if (o != STUDY_REACHED)
+            return o == STUDY_STOPPED;
+        s->rounds = round + 1;
     }
     return true;
 }
@@ -322,50 +284,31 @@ static bool allocate(study *s)
     return ok || fl_out_of_memory(s->scene->diags, "the study");
 }
 
-static bool open_references(study *s)
+static bool run_all(study *s)
 {
-    fl_params deep = study_deep_params(&s->scene->params);
-    const fl_params *base = &s->scene->params;
-    s->has_deep =
-        study_has_branches(s->scene->compiled) &&
-        (deep.depth_limit != base->depth_limit || deep.weight_threshold != base->weight_threshold);
-    return reference_open(s, base, &s->own) && (!s->has_deep || reference_open(s, &deep, &s->deep));
-}
-
-/* Both truths have the same seeds: their difference is known better than either. */
-static void compare_truths(study *s)
-{
-    size_t pixels = (size_t)s->width * s->height;
-    double sum = 0.0;
-    for (size_t i = 0; s->has_deep && i < 3 * pixels; i++) {
-        for (uint32_t k = 0; k < 2; k++)
-            s->shift[k][i] = s->deep.rgb[k][i] - s->own.rgb[k][i];
-        sum += (double)s->shift[0][i] * (double)s->shift[1][i];
-    }
-    s->truncation_rmse = sqrt(fl_max(0.0, sum / (3.0 * (double)pixels)));
-}
-
-static bool run_all(study *s, double begin_s)
-{
-    uint32_t first = fl_min_u32(s->settings.samples_max * REFERENCE_FIRST, reference_limit(s));
-    outcome o = references_grow(s, first, begin_s, 1.0);
-    if (o != REACHED)
-        return o == STOPPED;
-    if (s->settings.skips_warm_up)
+    double expected[STUDY_CONFIGS_MAX];
+    study_outcome o = study_references_grow(s, study_references_first(s), STUDY_WHOLE_BUDGET);
+    if (o != STUDY_REACHED)
+        return o == STUDY_STOPPED;
+    if (s->settings.skips_warm_up) {
         s->own.best = s->deep.best = 0.0; /* Not known: as good as can be. */
-    else if (!run_rounds(s, s->settings.repeats, 1, begin_s))
+    } else {
+        study_stage_begin(s, s->plan.count);
+        o = run_round(s, s->settings.repeats, NULL, 0.0, expected);
+    }
+    if (o != STUDY_REACHED)
+        return o == STUDY_STOPPED;
+    if (!study_references_finish(s))
         return false;
-    if (!s->was_interrupted && !references_finish(s, begin_s))
-        return false;
-    if (!s->was_interrupted)
-        compare_truths(s);
-    return s->was_interrupted || run_rounds(s, 0, s->settings.repeats, begin_s);
+    return s->was_interrupted || (study_references_compare(s) &&
+                                  run_rounds(s, s->settings.skips_warm_up ? NULL : expected));
 }
 
 bool study_run(cli_scene *scene, const study_settings *settings, uint32_t knobs, study *out)
 {
-    double begin_s = now_s();
     const fl_params *p = &scene->params;
+    out->begin_s = study_now_s();
+    out->load = study_load_average();
     out->scene = scene;
     out->settings = *settings;
     out->settings.shows_progress = settings->shows_progress && isatty(STDERR_FILENO);
@@ -378,18 +321,18 @@ bool study_run(cli_scene *scene, const study_settings *settings, uint32_t knobs,
     bool ok =
         out->render &&
         study_plan_build(scene, knobs, settings->samples_max, settings->threads, &out->plan) &&
-        allocate(out) && open_references(out) && run_all(out, begin_s);
+        allocate(out) && study_references_open(out) && run_all(out);
     if (out->settings.shows_progress)
         fputc('\n', stderr);
-    out->seconds = now_s() - begin_s;
+    out->seconds = study_now_s() - out->begin_s;
     return ok;
 }
 
 void study_close(study *s)
 {
     fl_render_destroy(s->render);
-    reference_close(&s->own);
-    reference_close(&s->deep);
+    study_references_close(s);
+    study_flip_destroy(s->flip);
     for (uint32_t i = 0; i < s->plan.count; i++) {
         free(s->pictures[i].rgb);
         free(s->differences[i].rgb);

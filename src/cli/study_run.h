@@ -11,10 +11,11 @@
 
 #include "cli/study_config.h"
 #include "cli/study_figures.h"
+#include "cli/study_flip.h"
 
 enum { STUDY_LEVELS_MAX = 17, STUDY_REPEATS_MAX = 64 };
 
-enum { STUDY_REFERENCE_FACTOR = 64 };
+enum { STUDY_REFERENCE_FACTOR = 128 };
 
 typedef struct study_settings {
     uint32_t samples_max; /**< A power of two, at most 2^(STUDY_LEVELS_MAX - 1). */
@@ -36,9 +37,11 @@ typedef struct study_measure {
     fl_error_estimate predicted;
     study_error noise; /**< Against the baseline converged; not for biased configurations. */
     study_error error; /**< Against the deep truth. */
+    double flip;       /**< Mean FLIP as shown, against the deep truth. */
+    double load;       /**< Load average of the machine, a minute's; below 0: not known. */
 } study_measure;
 
-/** A pair of independent converged pictures. */
+/** A pair of independent converged pictures, by samplers of different make. */
 typedef struct study_reference {
     fl_render *renders[2];
     float *rgb[2];
@@ -47,6 +50,13 @@ typedef struct study_reference {
     double best; /**< Least RMSE among the measured pictures, as seen in the warm-up. */
     uint64_t dropped_branches;
 } study_reference;
+
+/** What is being done, for the progress bar: in any unit of work. */
+typedef struct study_stage {
+    double begin_s, done, total;
+    double part; /**< What the render under way adds. */
+    char what[96];
+} study_stage;
 
 /** Pictures of one setting and different seeds, added up. */
 typedef struct study_sum {
@@ -72,7 +82,10 @@ typedef struct study {
     float *base_picture; /**< The baseline's last, of this round. */
     float *shift[2];     /**< Deep minus own reference: what the baseline lacks. */
     bool was_interrupted, ran_out_of_budget;
-    double seconds;
+    double begin_s, seconds;
+    double load;      /**< Load average when the study began; below 0: not known. */
+    study_flip *flip; /**< Holds pictures against the mean of the truth. */
+    study_stage stage;
     float *scratch[3]; /**< Each one picture of the full size. */
     fl_render *render;
 } study;
@@ -87,6 +100,12 @@ const study_measure *study_at(const study *s, uint32_t config, uint32_t round, u
 
 /** Levels that a configuration passes through. */
 uint32_t study_levels_of(const study_config *config);
+
+/** Whether the references' own error is a tenth of the best measured, or less. */
+bool study_reference_is_good(const study_reference *r);
+
+/** The load average of the last minute; below 0: not known. */
+double study_load_average(void);
 
 static inline const study_reference *study_truth(const study *s)
 {

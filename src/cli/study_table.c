@@ -42,6 +42,10 @@ static double p999_of(const study_measure *m)
 {
     return m->error.p999;
 }
+static double flip_of(const study_measure *m)
+{
+    return m->flip;
+}
 static double predicted_of(const study_measure *m)
 {
     return m->predicted.rmse;
@@ -121,6 +125,7 @@ static void fill_cell(const study *s, uint32_t config, uint32_t level, double re
         sqrt(cell->bias.standard_error * cell->bias.standard_error + reference_se * reference_se);
     cell->largest = spread(s, config, level, largest_of);
     cell->p999 = spread(s, config, level, p999_of);
+    cell->flip = spread(s, config, level, flip_of);
     cell->noise = study_root_of(&noise);
     cell->error = study_root_of(&error);
     cell->relative = study_root_of(&relative);
@@ -222,16 +227,33 @@ study_table *study_table_create(const study *s)
     return table;
 }
 
+static bool is_within(const study_cell *cell, double rmse)
+{
+    return cell->rounds && cell->error.value + 2.0 * cell->error.standard_error <= rmse;
+}
+
+/* What is cheaper by chance is no reason to leave the defaults. */
 bool study_cheapest(const study_table *table, double rmse, study_place *out_place)
 {
-    for (uint32_t i = 0; i < table->front_count; i++) {
-        const study_cell *cell = study_cell_at(table, table->front[i]);
-        if (cell->error.value + 2.0 * cell->error.standard_error <= rmse) {
-            *out_place = table->front[i];
-            return true;
-        }
-    }
-    return false;
+    uint32_t i = 0;
+    while (i < table->front_count && !is_within(study_cell_at(table, table->front[i]), rmse))
+        i++;
+    if (i == table->front_count)
+        return false;
+    *out_place = table->front[i];
+    const study_ratio *ratio = &study_cell_at(table, *out_place)->cpu_ratio;
+    if (out_place->config && !(ratio->is_significant && ratio->value < 1.0) &&
+        is_within(&table->columns[0].cells[out_place->level], rmse))
+        out_place->config = 0;
+    return true;
+}
+
+const study_cell *study_now(const study *s, const study_table *table)
+{
+    uint32_t level = s->levels - 1;
+    while (level && !table->columns[0].cells[level].rounds)
+        level--;
+    return &table->columns[0].cells[level];
 }
 
 void study_place_name(const study *s, study_place place, char *out, size_t bytes)
@@ -256,6 +278,33 @@ void study_sentence(const study *s, const study_table *table, double rmse, char 
              "%.3g million rays.",
              rmse, name, cell->error.value, cell->error.standard_error, cell->cpu_s.median,
              (double)study_rays(&cell->counts) * 1e-6);
+}
+
+void study_summary(const study *s, const study_table *table, char *out, size_t bytes)
+{
+    const study_cell *now = study_now(s, table);
+    study_place place;
+    if (!now->rounds) {
+        snprintf(out, bytes, "Nothing was measured.");
+        return;
+    }
+    int used =
+        snprintf(out, bytes,
+                 "As asked for, with %u samples: RMSE %.2g, mean FLIP %.2g, %.2g s of CPU time. ",
+                 now->samples, now->error.value, now->flip.mean, now->cpu_s.median);
+    double as_good = now->error.value + 2.0 * now->error.standard_error;
+    if (used < 0 || (size_t)used >= bytes)
+        return;
+    if (!study_cheapest(table, as_good, &place) || place.config == 0) {
+        snprintf(out + used, bytes - (size_t)used,
+                 "No measured setting is as good and surely cheaper.");
+        return;
+    }
+    char name[96];
+    const study_cell *cell = study_cell_at(table, place);
+    study_place_name(s, place, name, sizeof name);
+    snprintf(out + used, bytes - (size_t)used, "As good for %.0f %% of that time: %s (RMSE %.2g).",
+             100.0 * cell->cpu_s.median / now->cpu_s.median, name, cell->error.value);
 }
 
 uint32_t study_targets(const study_table *table, double wanted, double out_targets[8])

@@ -13,7 +13,7 @@ typedef struct study_cell {
     uint32_t rounds; /**< 0: not measured; all else is then 0. */
     uint32_t samples;
     fl_counts counts; /**< Of the first round. */
-    study_spread cpu_s, wall_s, bias, largest, p999;
+    study_spread cpu_s, wall_s, bias, largest, p999, flip;
     double bias_se; /**< With what the references do not know. */
     study_root noise, error, relative;
     double predicted;       /**< Mean of the predicted RMSE; 0: not known. */
@@ -43,8 +43,11 @@ typedef struct study_table {
 /** NULL: out of memory. From malloc. */
 study_table *study_table_create(const study *s);
 
+enum { STUDY_SENTENCE_BYTES = 480 };
+
 /** The cheapest place whose error against the deep truth, with twice its standard error, is at most
- * `rmse`. False: none. */
+ * `rmse`; the scene as asked for where that is as good and not significantly dearer. False: none.
+ */
 bool study_cheapest(const study_table *table, double rmse, study_place *out_place);
 
 static inline const study_cell *study_cell_at(const study_table *table, study_place place)
@@ -52,11 +55,17 @@ static inline const study_cell *study_cell_at(const study_table *table, study_pl
     return &table->columns[place.config].cells[place.level];
 }
 
+/** The scene as asked for: the baseline at the most samples that were measured. */
+const study_cell *study_now(const study *s, const study_table *table);
+
 /** "scale=1/2, 16 samples". */
 void study_place_name(const study *s, study_place place, char *out, size_t bytes);
 
 /** One sentence: the cheapest setting with an error of at most `rmse`, or that there is none. */
 void study_sentence(const study *s, const study_table *table, double rmse, char *out, size_t bytes);
+
+/** One sentence: the scene as asked for, and what is as good for less. */
+void study_summary(const study *s, const study_table *table, char *out, size_t bytes);
 
 /** Errors to give a sentence for: `wanted`, or (0) round numbers that were reached. */
 uint32_t study_targets(const study_table *table, double wanted, double out_targets[8]);

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cli/picture.h"
 #include "io/files.h"
@@ -46,13 +47,16 @@ static void csv_row(FILE *file, const study_config *config, uint32_t round, uint
         fputc(',', file);
     else
         fprintf(file, "%.9g,", m->noise.mse);
-    fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,", m->error.mse, m->error.relative_mse, m->error.bias,
-            m->error.largest, m->error.p999);
+    fprintf(file, "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,", m->error.mse, m->error.relative_mse,
+            m->error.bias, m->error.largest, m->error.p999, m->flip);
     if (m->predicted.is_known)
         fprintf(file, "%.9g,%.9g,%.9g,", m->predicted.rmse, m->predicted.low, m->predicted.high);
     else
         fputs(",,,", file);
-    fprintf(file, "%.6f,%.6f\n", m->cpu_s, m->wall_s);
+    fprintf(file, "%.6f,%.6f,", m->cpu_s, m->wall_s);
+    if (m->load >= 0.0)
+        fprintf(file, "%.2f", m->load);
+    fputc('\n', file);
 }
 
 /* Times stand last: all else is the same in every run. */
@@ -61,8 +65,8 @@ static void fill_csv(FILE *file, const void *context)
     const study *s = ((const study_report *)context)->s;
     fputs("config,knob,repeat,samples,camera_rays,shadow_rays,reflect_rays,refract_rays,"
           "node_visits,primitive_tests,invalid_samples,dropped_branches,noise_mse,error_mse,"
-          "relative_mse,bias,max_error,p999_error,predicted_rmse,predicted_low,predicted_high,"
-          "cpu_s,wall_s\n",
+          "relative_mse,bias,max_error,p999_error,flip,predicted_rmse,predicted_low,predicted_high,"
+          "cpu_s,wall_s,load\n",
           file);
     for (uint32_t round = 0; round < s->settings.repeats; round++)
         for (uint32_t i = 0; i < s->plan.count; i++)
@@ -108,11 +112,12 @@ static json_t *json_counts(const fl_counts *c)
 static json_t *json_cell(const study_cell *cell, bool is_biased, bool is_base)
 {
     json_t *row = json_pack(
-        "{s:i, s:i, s:o, s:{s:f, s:f}, s:f, s:f, s:f, s:f, s:f, s:o, s:o, s:o, s:o}", "samples",
-        (int)cell->samples, "rounds", (int)cell->rounds, "counts", json_counts(&cell->counts),
-        "error", "rmse", cell->error.value, "se", cell->error.standard_error, "relative_rmse",
-        cell->relative.value, "bias", cell->bias.mean, "bias_se", cell->bias_se, "max",
-        cell->largest.median, "p999", cell->p999.median, "predicted",
+        "{s:i, s:i, s:o, s:{s:f, s:f}, s:f, s:f, s:f, s:f, s:f, s:{s:f, s:f}, s:o, s:o, s:o, s:o}",
+        "samples", (int)cell->samples, "rounds", (int)cell->rounds, "counts",
+        json_counts(&cell->counts), "error", "rmse", cell->error.value, "se",
+        cell->error.standard_error, "relative_rmse", cell->relative.value, "bias", cell->bias.mean,
+        "bias_se", cell->bias_se, "max", cell->largest.median, "p999", cell->p999.median, "flip",
+        "mean", cell->flip.mean, "se", cell->flip.standard_error, "predicted",
         real_or_null(cell->predicted > 0.0, cell->predicted), "predicted_ratio",
         real_or_null(cell->predicted_ratio > 0.0, cell->predicted_ratio), "cpu_s",
         json_times(&cell->cpu_s), "wall_s", json_times(&cell->wall_s));
@@ -154,6 +159,34 @@ static json_t *json_reference(const study_reference *r)
                      "dropped_branches", (json_int_t)r->dropped_branches);
 }
 
+/* "model name : ...": what a processor calls itself; "": not said. */
+static void processor_name(char *out, size_t bytes)
+{
+    char line[256];
+    FILE *file = fopen("/proc/cpuinfo", "r");
+    out[0] = 0;
+    while (file && !out[0] && fgets(line, sizeof line, file))
+        if (strncmp(line, "model name", 10) == 0 && strchr(line, ':'))
+            snprintf(out, bytes, "%.*s", (int)strcspn(strchr(line, ':') + 2, "\n"),
+                     strchr(line, ':') + 2);
+    if (file)
+        fclose(file);
+}
+
+/* Where the times come from. */
+static json_t *json_machine(const study *s)
+{
+    char processor[128];
+    double load = study_load_average();
+    processor_name(processor, sizeof processor);
+    return json_pack("{s:s, s:i, s:i, s:s, s:s, s:s, s:s, s:o, s:o}", "processor", processor,
+                     "processors", (int)sysconf(_SC_NPROCESSORS_ONLN), "threads",
+                     (int)s->settings.threads, "isa", fl_isa_name(s->scene->compiled->isa),
+                     "compiler", __VERSION__, "flags", FL_BUILD_FLAGS, "commit", cli_commit,
+                     "load_begin", real_or_null(s->load >= 0.0, s->load), "load_end",
+                     real_or_null(load >= 0.0, load));
+}
+
 json_t *study_json(const study_report *report)
 {
     const study *s = report->s;
@@ -169,21 +202,24 @@ json_t *study_json(const study_report *report)
                                                cell->cpu_s.median, "rmse", cell->error.value));
     }
     double targets[8];
+    char summary[STUDY_SENTENCE_BYTES];
+    study_summary(s, report->table, summary, sizeof summary);
     uint32_t count = study_targets(report->table, report->wanted_rmse, targets);
     for (uint32_t i = 0; i < count; i++) {
-        char sentence[320];
+        char sentence[STUDY_SENTENCE_BYTES];
         study_sentence(s, report->table, targets[i], sentence, sizeof sentence);
         json_array_append_new(sentences, json_string(sentence));
     }
-    return json_pack(
-        "{s:s, s:s, s:i, s:i, s:i, s:i, s:s, s:s, s:o, s:o, s:f, s:b, s:b, s:f, s:o, s:o, s:o}",
-        "command", report->command, "scene", s->scene->path, "width", (int)s->width, "height",
-        (int)s->height, "samples_max", (int)s->settings.samples_max, "rounds", (int)s->rounds,
-        "isa", fl_isa_name(s->scene->compiled->isa), "compiler", __VERSION__, "reference",
-        json_reference(&s->own), "deep_reference",
-        s->has_deep ? json_reference(&s->deep) : json_null(), "truncation_rmse", s->truncation_rmse,
-        "interrupted", (int)s->was_interrupted, "out_of_budget", (int)s->ran_out_of_budget,
-        "seconds", s->seconds, "configs", configs, "pareto_front", front, "sentences", sentences);
+    return json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:f, s:b, s:b, s:f, s:o, "
+                     "s:o, s:s, s:o}",
+                     "command", report->command, "scene", s->scene->path, "width", (int)s->width,
+                     "height", (int)s->height, "samples_max", (int)s->settings.samples_max,
+                     "rounds", (int)s->rounds, "repeats", (int)s->settings.repeats, "machine",
+                     json_machine(s), "reference", json_reference(&s->own), "deep_reference",
+                     s->has_deep ? json_reference(&s->deep) : json_null(), "truncation_rmse",
+                     s->truncation_rmse, "interrupted", (int)s->was_interrupted, "out_of_budget",
+                     (int)s->ran_out_of_budget, "seconds", s->seconds, "configs", configs,
+                     "pareto_front", front, "summary", summary, "sentences", sentences);
 }
 
 static void fill_json(FILE *file, const void *context)

@@ -11,6 +11,9 @@
 
 #include "cli/study_table.h"
 
+/** The commit this program was built from, "-dirty" with changes; "unknown" without git. */
+extern const char cli_commit[];
+
 /** Write text that `fill` prints to DIR/NAME, all or nothing. False after adding an error. */
 bool study_save_text(const char *dir, const char *name,
                      void (*fill)(FILE *file, const void *context), const void *context,

@@ -12,6 +12,7 @@
 #include <math.h>
 
 #include "cli/study_figures.h"
+#include "cli/study_flip.h"
 
 enum { PIXELS = 4096, VALUES = 3 * PIXELS, SEED = 71 };
 
@@ -223,6 +224,76 @@ static void resizing_keeps_ramps(void **state)
     assert_memory_equal(large + 9, small, 3 * sizeof(float));
 }
 
+/* Mean FLIP of `b` against `a`. */
+static double flip_of(const float *a, const float *b, uint32_t side)
+{
+    study_flip *flip = study_flip_create(a, side, side, 0.0);
+    assert_non_null(flip);
+    double mean = study_flip_mean(flip, b);
+    study_flip_destroy(flip);
+    return mean;
+}
+
+/* Two flat pictures. */
+static double flip_of_colors(const float a[3], const float b[3])
+{
+    enum { SIDE = 8 };
+    float one[3 * SIDE * SIDE], two[3 * SIDE * SIDE];
+    for (uint32_t i = 0; i < 3 * SIDE * SIDE; i++) {
+        one[i] = a[i % 3];
+        two[i] = b[i % 3];
+    }
+    return flip_of(one, two, SIDE);
+}
+
+/* By hand from the formulas of the paper: black and white, and what is farthest apart. */
+static void flip_of_flat_pictures(void **state)
+{
+    (void)state;
+    static const float black[3] = {0}, white[3] = {1, 1, 1}, green[3] = {0, 1, 0},
+                       blue[3] = {0, 0, 1}, bright[3] = {7, 7, 7};
+    assert_true(fabs(flip_of_colors(black, white) - 0.967380) < 1e-4);
+    assert_true(fabs(flip_of_colors(green, blue) - 1.0) < 1e-6);
+    assert_true(flip_of_colors(blue, blue) == 0.0);
+    assert_true(flip_of_colors(white, bright) == 0.0); /* Both are shown as white. */
+}
+
+static double pattern(uint32_t x, uint32_t y, uint32_t c, uint32_t k)
+{
+    return (x * 7 + y * 13 + c * 5 + k * 11 + x * y * 3) % 17 / 16.0;
+}
+
+/* The number is that of another program, of two-dimensional filters straight from the paper. */
+static void flip_of_patterns(void **state)
+{
+    (void)state;
+    enum { SIDE = 24 };
+    static float a[3 * SIDE * SIDE], b[3 * SIDE * SIDE];
+    for (uint32_t i = 0; i < SIDE * SIDE; i++)
+        for (uint32_t c = 0; c < 3; c++) {
+            uint32_t x = i % SIDE, y = i / SIDE;
+            double value = pattern(x, y, c, 0);
+            a[3 * i + c] = (float)value;
+            b[3 * i + c] = (float)fl_min(1.0, value * 0.8 + 0.25 * pattern(y, x, c, 3));
+        }
+    assert_true(fabs(flip_of(a, b, SIDE) - 0.168551) < 1e-5);
+    assert_true(fabs(flip_of(b, a, SIDE) - flip_of(a, b, SIDE)) < 1e-6);
+    assert_true(flip_of(a, a, SIDE) == 0.0);
+}
+
+/* More noise looks worse. */
+static void flip_grows_with_noise(void **state)
+{
+    (void)state;
+    double before = 0.0;
+    for (uint32_t k = 0; k < 6; k++) {
+        fill(picture, 0.0, 0.005 * (1 << k), 900);
+        double flip = flip_of(truth, picture, 64);
+        assert_true(flip > before && flip < 1.0);
+        before = flip;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -235,6 +306,9 @@ int main(void)
         cmocka_unit_test(quantiles_of_student),
         cmocka_unit_test(spreads),
         cmocka_unit_test(resizing_keeps_ramps),
+        cmocka_unit_test(flip_of_flat_pictures),
+        cmocka_unit_test(flip_of_patterns),
+        cmocka_unit_test(flip_grows_with_noise),
     };
     return cmocka_run_group_tests(tests, begin, NULL);
 }
