@@ -38,13 +38,20 @@ static bool load(void *context, const char *path, vw_scene *out, fl_diags *diags
     return ok;
 }
 
+static uint32_t thread_count(const cli_options *options)
+{
+    uint32_t count = fl_thread_count(options->threads);
+    return cli_has(options, CLI_OPT_LEAVE_CORE) && count > 1 ? count - 1 : count;
+}
+
 static vw_options viewer_options(const cli_options *options)
 {
     return (vw_options){.loader = {.context = (void *)(uintptr_t)options, .load = load},
                         .platform = options->platform,
                         .shader_dir = options->shader_dir,
                         .record_path = options->record,
-                        .thread_count = options->threads,
+                        .thread_count = thread_count(options),
+                        .is_low_priority = true,
                         .is_size_fixed = cli_has(options, CLI_OPT_SIZE),
                         .is_quiet = cli_has(options, CLI_OPT_QUIET),
                         .limits = {.samples = options->samples, .noise_rmse = options->noise, .seconds = options->time_s},

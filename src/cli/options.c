@@ -65,6 +65,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                      "instruction set (default auto); all give the same picture"},
     [CLI_OPT_THREADS] = {"threads", 'j', "N", CLI_KIND_COUNT, AT(threads), 1, 1024, NULL, LOADING,
                          "worker threads (default: one per CPU); any number gives the same picture"},
+    [CLI_OPT_LEAVE_CORE] = {"leave-core", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_VIEW) | BIT(CLI_REPLAY),
+                            "one worker thread fewer: a CPU is left to others"},
     [CLI_OPT_DIALECT] = {"dialect", 0, NULL, CLI_KIND_CHOICE, AT(dialect), 0, 0, dialect_names,
                          LOADING | BIT(CLI_CONVERT), "whose rules the text follows (default: recognised)"},
     [CLI_OPT_DIALECT_EXACT] = {"dialect-exact", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, LOADING,

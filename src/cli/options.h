@@ -44,6 +44,7 @@ typedef enum cli_option_id {
     CLI_OPT_OCTREE_HEIGHT,
     CLI_OPT_ISA,
     CLI_OPT_THREADS,
+    CLI_OPT_LEAVE_CORE,
     CLI_OPT_DIALECT,
     CLI_OPT_DIALECT_EXACT,
     CLI_OPT_LENIENT,

@@ -144,7 +144,8 @@ static void pixel_mean(const fl_film *film, size_t at, float *out_rgb)
         double sum = has_full ? film->full[at][c] : 0.0;
         if (has_block)
             sum += film->block[at][c];
-        out_rgb[c] = valid > 0 ? (float)(sum / valid) : 0.0f;
+        /* One sample is its own mean: three divisions less for the first pictures. */
+        out_rgb[c] = valid > 1 ? (float)(sum / valid) : valid > 0 ? (float)sum : 0.0f;
     }
 }
 
@@ -175,19 +176,35 @@ void fl_film_mean(const fl_film *film, float *out_rgb)
         fl_film_row(film, 0, y, film->width, out_rgb + (size_t)3 * y * film->width);
 }
 
-void fl_film_rows_filled(const fl_film *film, uint32_t row_begin, uint32_t row_end, float *out_rgb)
+uint32_t fl_film_rows_covered(const fl_film *film, uint32_t row_begin, uint32_t row_end,
+                              float *out_rgb, uint8_t *out_rgba)
 {
     FL_ASSERT(row_begin <= row_end && row_end <= film->height);
+    uint32_t covered = 0;
     for (uint32_t y = row_begin; y < row_end; y++)
-        for (uint32_t x = 0; x < film->width; x++, out_rgb += 3) {
-            uint32_t mask = 0;
-            while (mask < 7 && !has_sample(film, x & ~mask, y & ~mask))
-                mask = 2 * mask + 1;
-            uint32_t from_x = x & ~mask, from_y = y & ~mask;
-            if (has_sample(film, from_x, from_y))
-                pixel_mean(film, (size_t)from_y * film->width + from_x, out_rgb);
-            else
-                out_rgb[0] = out_rgb[1] = out_rgb[2] = 0.0f;
+        for (uint32_t x = 0; x < film->width; x++, out_rgba += 4) {
+            out_rgba[3] = 0;
+            if (!has_sample(film, x, y))
+                continue;
+            out_rgba[3] = 255;
+            pixel_mean(film, (size_t)y * film->width + x, out_rgb + (size_t)3 * covered++);
+        }
+    return covered;
+}
+
+void fl_film_fill_holes(uint8_t *rgba, uint32_t width, uint32_t rows)
+{
+    static const uint8_t black[4] = {0, 0, 0, 255};
+    for (uint32_t y = 0; y < rows; y++)
+        for (uint32_t x = 0; x < width; x++) {
+            uint8_t *pixel = rgba + (size_t)4 * ((size_t)y * width + x);
+            if (pixel[3])
+                continue;
+            /* The corner of the next larger cell has been filled already, if by its own corner. */
+            uint32_t both = x | y, mask = both & 1 ? 1 : both & 2 ? 3 : 7;
+            const uint8_t *from =
+                both & 7 ? rgba + (size_t)4 * ((size_t)(y & ~mask) * width + (x & ~mask)) : black;
+            memcpy(pixel, from, 4);
         }
 }
 

@@ -39,10 +39,17 @@ void fl_film_samples_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t c
 /** Mean of the whole film, top row first, 3 * width * height floats. */
 void fl_film_mean(const fl_film *film, float *out_rgb);
 
-/** Mean of rows [row_begin, row_end) for display while sample 0 is incomplete: a pixel without a
- * sample takes the value of the nearest corner pixel of its 2x2, else 4x4, else 8x8 cell that has
- * one; corners have the lower Bayer ranks (decision 16). Never for saved pictures. */
-void fl_film_rows_filled(const fl_film *film, uint32_t row_begin, uint32_t row_end, float *out_rgb);
+/** For display while sample 0 is incomplete: means of those pixels of rows [row_begin, row_end)
+ * that have a sample, one after the other; returns how many. Sets the alpha of every pixel of the
+ * rows in out_rgba: 255 for these, else 0. */
+uint32_t fl_film_rows_covered(const fl_film *film, uint32_t row_begin, uint32_t row_end,
+                              float *out_rgb, uint8_t *out_rgba);
+
+/** Fill the pixels of alpha 0 in `rows` rows, the first of which is a multiple of 8 of the picture:
+ * with the nearest corner pixel of their 2x2, else 4x4, else 8x8 cell that has another alpha;
+ * corners have the lower Bayer ranks (decision 16). Without one: opaque black. Never for saved
+ * pictures. */
+void fl_film_fill_holes(uint8_t *rgba, uint32_t width, uint32_t rows);
 
 /** Samples every pixel has (the minimum over pixels), and the number of pixels with at least one.
  * O(pixels). */

@@ -100,7 +100,7 @@ static bool fits(const fl_job *job, const fl_frame *frame)
 /* Room for fl_render_display's rows. The owner's alone: no lock. */
 static bool reserve_rows(fl_render *render, uint32_t width, fl_diags *diags)
 {
-    size_t floats = (size_t)width * 3 * FL_BAND_ROWS;
+    size_t floats = fl_display_floats(width);
     if (floats <= render->row_floats)
         return true;
     float *rows = realloc(render->rows, floats * sizeof *rows);
@@ -289,14 +289,12 @@ bool fl_render_wait(fl_render *render, double seconds)
 
 /* Copy rows of the shown picture. False: it is no longer that of `generation`. */
 static bool copy_rows(fl_render *render, uint64_t generation, uint32_t begin, uint32_t end,
-                      bool is_filled, float *out_rgb)
+                      float *out_rgb)
 {
     pthread_mutex_lock(&render->lock);
     const fl_job *job = render->shown;
     bool is_same = job->generation == generation;
-    if (is_same && is_filled && fl_schedule_complete_samples(job->schedule) == 0)
-        fl_film_rows_filled(job->film, begin, end, out_rgb);
-    else if (is_same)
+    if (is_same)
         for (uint32_t y = begin; y < end; y++)
             fl_film_row(job->film, 0, y, job->width,
                         out_rgb + (size_t)3 * (y - begin) * job->width);
@@ -315,25 +313,11 @@ static uint64_t look(fl_render *render, fl_progress *out_progress)
     return revision;
 }
 
-static bool display_picture(fl_render *render, const fl_progress *picture,
-                            const fl_tonemap *tonemap, uint8_t *out_rgba)
-{
-    size_t width = picture->width;
-    for (uint32_t y = 0; y < picture->height; y += FL_BAND_ROWS) {
-        uint32_t end = fl_min_u32(y + FL_BAND_ROWS, picture->height);
-        if (!copy_rows(render, picture->generation, y, end, true, render->rows))
-            return false;
-        fl_tonemapper_run(render->tonemapper, tonemap, render->rows, (end - y) * width,
-                          out_rgba + 4 * width * y);
-    }
-    return true;
-}
-
 static bool copy_picture(fl_render *render, const fl_progress *picture, float *out_rgb)
 {
     for (uint32_t y = 0; y < picture->height; y += FL_BAND_ROWS) {
         uint32_t end = fl_min_u32(y + FL_BAND_ROWS, picture->height);
-        if (!copy_rows(render, picture->generation, y, end, false,
+        if (!copy_rows(render, picture->generation, y, end,
                        out_rgb + (size_t)3 * picture->width * y))
             return false;
     }
@@ -348,7 +332,7 @@ bool fl_render_display(fl_render *render, uint64_t *revision, const fl_tonemap *
         size_t pixels = (size_t)out_progress->width * out_progress->height;
         if (pixels == 0 || newest == *revision || capacity_bytes < 4 * pixels)
             return false;
-        if (display_picture(render, out_progress, tonemap, out_rgba)) {
+        if (fl_display_picture(render, out_progress, tonemap, out_rgba)) {
             *revision = newest;
             return true;
         }

@@ -17,6 +17,9 @@ typedef struct fl_render_options {
     uint32_t thread_count;     /**< 0: one per online CPU. */
     size_t memory_limit_bytes; /**< Films and what grows with them; 0: FL_RENDER_MEMORY_LIMIT. */
     bool is_low_priority;      /**< Workers yield to the desktop (nice + 1; Linux). */
+    /** fl_render_display filters pictures of few samples: [1 2 1] along both axes up to 4 with a
+     * lens or a light of some size, else half as much of the neighbours for 1. */
+    bool smooths_display;
     /** Called by a worker, with no lock held, when there is something new to show or the render is
      * done or has failed; at most once until the next fl_render_display or fl_render_progress.
      * NULL: none. Must not call the render. */
@@ -61,8 +64,8 @@ typedef struct fl_progress {
                                      then. */
     double first_sample_seconds;  /**< From fl_render_restart to sample 0 complete, wall time; 0
                                      until then. */
-    double cancel_seconds;   /**< The current generation's beginning until the last stale unit was
-                                dropped. */
+    double cancel_seconds; /**< The current generation's beginning until the last stale unit was
+                              dropped. */
     double cost_seconds[FL_COST_COUNT]; /**< cpu_seconds by stage. */
     fl_counts counts;        /**< Of committed units: the same for any number of threads. */
     fl_error_estimate error; /**< Of the mean; between passes that of the complete samples. */
@@ -117,8 +120,8 @@ typedef enum fl_render_map {
     FL_RENDER_ERROR    /**< Estimated rmse of the 16 x 16 square around; 0 below 4 samples. */
 } fl_render_map;
 
-/** Copy a map of the picture to show, one float a pixel, top row first; `capacity_floats` must be at
- * least width * height. False: no picture yet, or too small. Any thread. */
+/** Copy a map of the picture to show, one float a pixel, top row first; `capacity_floats` must be
+ * at least width * height. False: no picture yet, or too small. Any thread. */
 bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
                         size_t capacity_floats, fl_progress *out_progress);
 

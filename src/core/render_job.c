@@ -18,7 +18,7 @@ bool fl_job_bytes(uint32_t width, uint32_t height, size_t *out_bytes)
     if (!fl_film_bytes(width, height, &film) || !fl_schedule_bytes(width, height, &schedule) ||
         !fl_estimate_bytes(width, height, &estimate))
         return false;
-    size_t rows = (size_t)width * 3 * FL_BAND_ROWS * sizeof(float);
+    size_t rows = fl_display_floats(width) * sizeof(float);
     return !__builtin_add_overflow(film, schedule + rows, out_bytes) &&
            !__builtin_add_overflow(*out_bytes, estimate, out_bytes);
 }

@@ -93,6 +93,13 @@ struct fl_render {
 
 enum { FL_BAND_ROWS = 32 }; /**< Rows copied at a time; a multiple of 8. */
 
+/** Room that fl_display_picture needs in `rows`. */
+size_t fl_display_floats(uint32_t width);
+/** Tone-map the shown picture. The owner's, without the lock. False: it is no longer `picture`'s
+ * generation. */
+bool fl_display_picture(fl_render *render, const fl_progress *picture, const fl_tonemap *tonemap,
+                        uint8_t *out_rgba);
+
 /** Seconds of a clock that never jumps. */
 double fl_render_now(void);
 void *fl_worker_main(void *worker);

@@ -12,6 +12,7 @@
 
 #include "io/state_text.h"
 #include "viewer/log.h"
+#include "viewer/pace.h"
 #include "viewer/session.h"
 #include "viewer/view.h"
 #include "viewer/watch.h"
@@ -36,8 +37,7 @@ typedef struct app {
     FILE *record;
     struct timespec begin;
     uint64_t now_ms;
-    uint64_t shown_ms;        /**< When the picture last changed. */
-    uint64_t asked_ms;        /**< When the render was last asked for a newer one. */
+    vw_pace pace;
     uint64_t restart_ms;      /**< When to restart; UINT64_MAX: nothing to restart. */
     uint64_t reload_ms;       /**< When to read the changed files; UINT64_MAX: they did not. */
     uint64_t done_generation; /**< Last picture announced as done. */
@@ -252,25 +252,35 @@ static void take_events(app *a)
     apply(a, vw_input_advance(&a->session.input, &a->session.state, a->now_ms), false);
 }
 
+static bool is_running(const vw_session *session)
+{
+    return !session->state.is_paused && !session->state.is_hidden;
+}
+
+/* When the restart that is due may begin; UINT64_MAX: none is due. */
+static uint64_t restart_from_ms(const app *a)
+{
+    uint64_t held_ms = is_running(&a->session) ? vw_pace_held_until_ms(&a->pace) : 0;
+    return a->restart_ms > held_ms ? a->restart_ms : held_ms;
+}
+
 static void restart_if_due(app *a)
 {
-    if (a->now_ms < a->restart_ms)
+    if (a->now_ms < restart_from_ms(a))
         return;
     a->restart_ms = UINT64_MAX;
     /* A snapshot that still waits would show another picture: take it as it is. */
     if (a->session.exact_samples)
         save_snapshot(a);
-    if (!vw_session_restart(&a->session, &a->diags))
+    if (vw_session_restart(&a->session, &a->diags)) {
+        fl_progress progress;
+        fl_render_progress(a->session.render, &progress);
+        vw_pace_restart(&a->pace, progress.newest_generation, a->now_ms);
+        a->session.progress.state = progress.state;
+    } else {
         show_error(a);
-    a->wants_refresh = true;
-}
-
-/* How long one refresh of the picture is enough: what is new gets rarer. */
-static uint64_t refresh_interval_ms(const fl_progress *progress)
-{
-    if (progress->complete_samples <= 4)
-        return 16;
-    return progress->seconds < 1.0 ? 100 : 500;
+        a->wants_refresh = true;
+    }
 }
 
 static void announce(app *a)
@@ -292,14 +302,14 @@ static void announce(app *a)
 static void refresh_if_due(app *a)
 {
     vw_session *session = &a->session;
-    if (!a->wants_refresh && a->now_ms < a->shown_ms + refresh_interval_ms(&session->progress))
+    if (!a->wants_refresh && a->now_ms < vw_pace_due_ms(&a->pace, &session->progress))
         return;
     fl_render_state before = session->progress.state;
     uint32_t samples_before = session->progress.complete_samples;
     a->wants_refresh = false;
-    a->asked_ms = a->now_ms;
-    if (vw_session_refresh(session, &a->diags)) {
-        a->shown_ms = a->now_ms;
+    bool is_newer = vw_session_refresh(session, &a->diags);
+    vw_pace_shown(&a->pace, &session->progress, a->now_ms);
+    if (is_newer) {
         vw_view_upload(a->view, vw_session_shown(session), session->progress.width,
                        session->progress.height);
         a->needs_draw = true;
@@ -341,13 +351,14 @@ static double time_to_sleep(const app *a)
     const vw_session *session = &a->session;
     if (a->platform->events.count > 0)
         return 0.0;
-    uint64_t until = earlier(a->restart_ms, a->reload_ms);
+    uint64_t until =
+        earlier(a->restart_ms == UINT64_MAX ? UINT64_MAX : restart_from_ms(a), a->reload_ms);
     if (vw_input_is_moving(&session->input))
         until = earlier(until, vw_input_next_tick_ms(&session->input));
     if (vw_state_message(&session->state))
         until = earlier(until, session->state.message_until_ms);
     if (session->progress.state == FL_RENDER_RUNNING || session->exact_samples)
-        until = earlier(until, a->asked_ms + refresh_interval_ms(&session->progress));
+        until = earlier(until, vw_pace_due_ms(&a->pace, &session->progress));
     if (until == UINT64_MAX)
         return a->options->was_interrupted ? 1.0 : -1.0;
     return until > a->now_ms ? (double)(until - a->now_ms) / 1000.0 : 0.0;
@@ -363,7 +374,9 @@ static bool loop(app *a, fl_diags *diags)
         a->needs_draw |= had_message != (vw_state_message(&a->session.state) != NULL);
         restart_if_due(a);
         refresh_if_due(a);
-        if (a->needs_draw && !draw(a, diags))
+        /* After the look, which may have shown what a restart waited for. */
+        restart_if_due(a);
+        if (a->needs_draw && !a->session.state.is_hidden && !draw(a, diags))
             return false;
         if (a->options->was_interrupted && a->options->was_interrupted())
             break;

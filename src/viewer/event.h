@@ -18,6 +18,7 @@ typedef enum vw_event_kind {
     VW_EVENT_DROP,
     VW_EVENT_PASTE, /**< Text of the clipboard, in `path`, on one line. */
     VW_EVENT_FOCUS, /**< The window lost the keyboard: everything held is released. */
+    VW_EVENT_ICONIFY, /**< The window became an icon (action GLFW_PRESS), or a window again. */
     VW_EVENT_CLOSE  /**< The user asked the window to close. */
 } vw_event_kind;
 

@@ -220,6 +220,10 @@ vw_dirty vw_input_event(vw_input *input, vw_state *state, const vw_event *event,
     case VW_EVENT_RESIZE:
         dirty |= vw_state_resize(state, event->width, event->height);
         break;
+    case VW_EVENT_ICONIFY:
+        state->is_hidden = event->action == GLFW_PRESS;
+        dirty |= VW_DIRTY_LIMITS;
+        break;
     case VW_EVENT_CLOSE:
         dirty |= VW_DIRTY_QUIT;
         break;

@@ -243,6 +243,20 @@ static bool parse_focus(reader *r, vw_log_entry *entry)
     return is_word(w, "lost") ? read_end(r) : expected(r, w, "lost");
 }
 
+static bool parse_iconify(reader *r, vw_log_entry *entry)
+{
+    entry->event.kind = VW_EVENT_ICONIFY;
+    entry->event.action = GLFW_PRESS;
+    return read_end(r);
+}
+
+static bool parse_restore(reader *r, vw_log_entry *entry)
+{
+    entry->event.kind = VW_EVENT_ICONIFY;
+    entry->event.action = GLFW_RELEASE;
+    return read_end(r);
+}
+
 static bool parse_picture(reader *r, vw_log_kind kind, vw_log_entry *entry)
 {
     /* The file's name may hold blanks: the number of samples is the last word. */
@@ -274,10 +288,11 @@ static const struct {
     const char *name;
     parse_fn *parse;
 } kinds[] = {
-    {"key", parse_key},       {"button", parse_button},     {"cursor", parse_cursor},
-    {"scroll", parse_scroll}, {"resize", parse_resize},     {"drop", parse_drop},
-    {"focus", parse_focus},   {"snapshot", parse_snapshot}, {"quit", parse_quit},
-    {"paste", parse_paste},   {"window", parse_window},
+    {"key", parse_key},         {"button", parse_button},     {"cursor", parse_cursor},
+    {"scroll", parse_scroll},   {"resize", parse_resize},     {"drop", parse_drop},
+    {"focus", parse_focus},     {"snapshot", parse_snapshot}, {"quit", parse_quit},
+    {"paste", parse_paste},     {"window", parse_window},     {"iconify", parse_iconify},
+    {"restore", parse_restore},
 };
 
 static bool add_entry(reader *r, const vw_log_entry *entry)

@@ -69,6 +69,9 @@ void vw_log_write_event(FILE *file, uint64_t ms, const vw_event *event)
     case VW_EVENT_FOCUS:
         fprintf(file, "%llu focus lost", at);
         break;
+    case VW_EVENT_ICONIFY:
+        fprintf(file, "%llu %s", at, event->action == GLFW_PRESS ? "iconify" : "restore");
+        break;
     case VW_EVENT_CLOSE: /* The end is written as `quit`. */
         return;
     }

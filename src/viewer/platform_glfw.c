@@ -110,6 +110,12 @@ static void on_focus(GLFWwindow *window, int is_focused)
         push(window, &(vw_event){.kind = VW_EVENT_FOCUS});
 }
 
+static void on_iconify(GLFWwindow *window, int is_iconified)
+{
+    push(window, &(vw_event){.kind = VW_EVENT_ICONIFY,
+                             .action = is_iconified ? GLFW_PRESS : GLFW_RELEASE});
+}
+
 static void on_close(GLFWwindow *window)
 {
     glfwSetWindowShouldClose(window, GLFW_FALSE);
@@ -230,6 +236,7 @@ static void set_callbacks(GLFWwindow *window)
     glfwSetWindowContentScaleCallback(window, on_scale);
     glfwSetDropCallback(window, on_drop);
     glfwSetWindowFocusCallback(window, on_focus);
+    glfwSetWindowIconifyCallback(window, on_iconify);
     glfwSetWindowCloseCallback(window, on_close);
 }
 

@@ -12,6 +12,7 @@
 #include "io/files.h"
 #include "io/image_file.h"
 #include "viewer/log.h"
+#include "viewer/pace.h"
 #include "viewer/session.h"
 #include "viewer/view.h"
 
@@ -114,16 +115,25 @@ static bool has_failed(replay *r)
            !fl_out_of_memory(r->diags, "rendering");
 }
 
-/* Show pictures until `samples` are complete; notes when the first picture of the new parameters
- * was drawn. */
+/* Show pictures at the window's pace until `samples` are complete; notes when the first picture of
+ * the new parameters was drawn. */
 static bool watch(replay *r, double begin_s, uint32_t samples)
 {
     vw_session *session = &r->session;
     bool has_first = false;
+    vw_pace pace = {0};
+    fl_render_progress(session->render, &session->progress);
+    vw_pace_restart(&pace, session->progress.newest_generation, (uint64_t)(begin_s * 1e3));
     while (session->progress.state != FL_RENDER_DONE || !has_first) {
         bool is_new;
+        double sleep_s = (double)vw_pace_due_ms(&pace, &session->progress) * 1e-3 - seconds_now();
+        if (sleep_s > 0.0) {
+            r->platform->ops->pump(r->platform, sleep_s);
+            continue;
+        }
         if (!show(r, &is_new) || has_failed(r) || is_interrupted(r))
             return false;
+        vw_pace_shown(&pace, &session->progress, (uint64_t)(seconds_now() * 1e3));
         const fl_progress *p = &session->progress;
         if (is_new && !has_first && p->complete_ranks > 0) {
             has_first = true;
@@ -132,7 +142,6 @@ static bool watch(replay *r, double begin_s, uint32_t samples)
         }
         if (has_first && p->complete_samples >= samples)
             break;
-        r->platform->ops->pump(r->platform, 0.1);
     }
     return add_time(&r->full, (seconds_now() - begin_s) * 1e3, r->diags) &&
            add_time(&r->cancel, session->progress.cancel_seconds * 1e3, r->diags);

@@ -66,6 +66,7 @@ bool vw_session_start(vw_session *session, void (*notify)(void *context), void *
 {
     fl_render_options render = {.thread_count = session->options->thread_count,
                                 .is_low_priority = session->options->is_low_priority,
+                                .smooths_display = true,
                                 .notify = notify,
                                 .notify_context = notify_context};
     session->notify = notify;
@@ -103,7 +104,8 @@ void vw_session_set_limits(vw_session *session)
     if (session->exact_samples)
         limits = (fl_render_limits){.samples = session->exact_samples};
     fl_render_set_limits(session->render, &limits);
-    fl_render_set_paused(session->render, session->state.is_paused && !session->exact_samples);
+    bool rests = session->state.is_paused || session->state.is_hidden;
+    fl_render_set_paused(session->render, rests && !session->exact_samples);
 }
 
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)

@@ -97,6 +97,7 @@ void vw_state_init(vw_state *state, const fl_params *params, const fl_compiled *
     *state = (vw_state){.width = state->width,
                         .height = state->height,
                         .now_ms = state->now_ms,
+                        .is_hidden = state->is_hidden,
                         .mode = VW_MODE_FLY,
                         .speed = 1.0,
                         .rack_seconds = 2.0,

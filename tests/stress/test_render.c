@@ -345,6 +345,56 @@ static void one_call_for_each_look_until_done(void **state)
     fl_render_destroy(render);
 }
 
+/* Mean of the 3 x 3 pixels around, `share` of each neighbour along either axis; the edge repeats.
+ */
+static void smoothed(const float *rgb, float share, float *out_rgb)
+{
+    for (int y = 0; y < H; y++)
+        for (int x = 0; x < W; x++)
+            for (int c = 0; c < 3; c++) {
+                double sum = 0.0, weight = 0.0;
+                for (int j = -1; j <= 1; j++)
+                    for (int i = -1; i <= 1; i++) {
+                        int at_x = x + i < 0 ? 0 : x + i >= W ? W - 1 : x + i;
+                        int at_y = y + j < 0 ? 0 : y + j >= H ? H - 1 : y + j;
+                        double part = (i ? (double)share : 1.0) * (j ? (double)share : 1.0);
+                        sum += part * (double)rgb[3 * (at_y * W + at_x) + c];
+                        weight += part;
+                    }
+                out_rgb[3 * (y * W + x) + c] = (float)(sum / weight);
+            }
+}
+
+static void only_the_display_of_the_first_samples_is_smooth(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    fl_render_options options = {.thread_count = 2, .smooths_display = true};
+    fl_render *render = fl_render_create(&options, &diags);
+    assert_non_null(render);
+    for (uint32_t samples = 1; samples <= 2; samples++) {
+        static float rgb[3 * W * H], filtered[3 * W * H];
+        static uint8_t rgba[4 * W * H], want[4 * W * H];
+        kit_limit(render, samples);
+        kit_restart(render, 5, 0, 0, W, H);
+        assert_true(fl_render_wait(render, -1.0));
+        kit_assert_film(render, 5, 0, 0, W, H, samples);
+        fl_progress progress;
+        uint64_t revision = 0;
+        fl_tonemap tonemap = {.exposure_ev = -1.0};
+        assert_true(fl_render_display(render, &revision, &tonemap, rgba, sizeof rgba, &progress));
+        assert_true(fl_render_mean(render, rgb, FL_COUNT_OF(rgb), &progress));
+        /* The fake frame has neither lens nor lights: from the second sample on, as it is. */
+        smoothed(rgb, samples == 1 ? 0.25f : 0.0f, filtered);
+        fl_tonemap_rgba8(&tonemap, filtered, W * H, want);
+        for (size_t i = 0; i < sizeof rgba; i++)
+            assert_in_range(rgba[i] + 1 - want[i], samples == 1 ? 0 : 1, samples == 1 ? 2 : 1);
+        fl_tonemap_rgba8(&tonemap, rgb, W * H, want);
+        assert_int_equal(memcmp(rgba, want, sizeof want) == 0, samples == 2);
+    }
+    fl_render_destroy(render);
+}
+
 static void counts_and_times_are_those_of_the_film(void **state)
 {
     (void)state;
@@ -406,6 +456,7 @@ int main(void)
         cmocka_unit_test(too_large_a_film_is_refused_and_the_old_one_stays),
         cmocka_unit_test(a_worker_without_memory_fails_the_render_until_restart),
         cmocka_unit_test(one_call_for_each_look_until_done),
+        cmocka_unit_test(only_the_display_of_the_first_samples_is_smooth),
         cmocka_unit_test(counts_and_times_are_those_of_the_film),
         cmocka_unit_test(quitting_amid_the_work_is_clean),
     };

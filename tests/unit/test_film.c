@@ -102,9 +102,11 @@ static void a_cleared_film_is_empty_and_starts_over(void **state)
     fl_film_clear(film);
     assert_mean_is(film, 0);
     static float rgb[3 * W * H];
-    fl_film_rows_filled(film, 0, H, rgb);
-    for (size_t i = 0; i < FL_COUNT_OF(rgb); i++)
-        assert_true(rgb[i] == 0.0f);
+    static uint8_t rgba[4 * W * H];
+    assert_int_equal(fl_film_rows_covered(film, 0, H, rgb, rgba), 0);
+    fl_film_fill_holes(rgba, W, H);
+    for (size_t i = 0; i < FL_COUNT_OF(rgba); i++)
+        assert_int_equal(rgba[i], i % 4 == 3 ? 255 : 0);
     add(film, (fl_rect){0, 3, W, 4}, 1, 0);
     assert_int_equal(fl_film_covered_pixels(film), W);
     fl_film_clear(film);
@@ -118,20 +120,34 @@ static void holes_take_the_corner_of_the_smallest_cell(void **state)
 {
     (void)state;
     fl_film *film = fl_film_create(W, H);
-    static float mean[3 * W * H], filled[3 * W * H];
+    static float mean[3 * W * H], covered[3 * W * H];
+    static uint8_t want[4 * W * H], got[4 * W * H];
     for (uint32_t step = 8; step >= 1; step /= 2) { /* Ranks 0; 0-3; 0-15; all. */
         fl_film_clear(film);
         add(film, whole, step, 0);
         fl_film_mean(film, mean);
-        fl_film_rows_filled(film, 0, 8, filled);
-        fl_film_rows_filled(film, 8, H, filled + 3 * 8 * W);
+        uint32_t count = fl_film_rows_covered(film, 0, H, covered, got), next = 0;
         for (uint32_t y = 0; y < H; y++)
             for (uint32_t x = 0; x < W; x++) {
-                const float *from = mean + 3 * ((y - y % step) * W + x - x % step);
-                assert_memory_equal(filled + 3 * (y * W + x), from, 3 * sizeof *from);
+                uint8_t *pixel = got + 4 * (y * W + x);
+                const uint8_t *from = want + 4 * ((y - y % step) * W + x - x % step);
+                bool has_sample = x % step == 0 && y % step == 0;
+                assert_int_equal(pixel[3], has_sample ? 255 : 0);
+                if (has_sample) {
+                    uint32_t id = y * W + x;
+                    memcpy(want + 4 * id, &(uint32_t){id | 0xff000000u}, 4);
+                    memcpy(pixel, want + 4 * id, 4);
+                    assert_memory_equal(covered + 3 * next, mean + 3 * id, 3 * sizeof *mean);
+                    next++;
+                } else {
+                    memcpy(want + 4 * (y * W + x), from, 4);
+                }
             }
+        assert_int_equal(next, count);
+        fl_film_fill_holes(got, W, 8);
+        fl_film_fill_holes(got + 4 * 8 * W, W, H - 8);
+        assert_memory_equal(got, want, sizeof want);
     }
-    assert_memory_equal(filled, mean, sizeof filled);
     fl_film_destroy(film);
 }
 

@@ -120,6 +120,8 @@ static void what_is_written_reads_back(void **unused)
         {.kind = VW_EVENT_RESIZE, .width = 1, .height = 16384},
         {.kind = VW_EVENT_DROP, .path = "/some where/b.scene"},
         {.kind = VW_EVENT_FOCUS},
+        {.kind = VW_EVENT_ICONIFY, .action = GLFW_PRESS},
+        {.kind = VW_EVENT_ICONIFY, .action = GLFW_RELEASE},
     };
     char *text = NULL;
     size_t bytes = 0;

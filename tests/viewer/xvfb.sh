@@ -12,6 +12,7 @@ if [ -z "${FL_UNDER_XVFB:-}" ]; then
     FL_UNDER_XVFB=1 exec xvfb-run -a -s '-screen 0 1024x768x24' "$0" "$@"
 fi
 
+here=$(realpath "$(dirname "$0")")
 [ -x "$1" ] || { echo "FAILED: no program $1"; exit 1; }
 program=$(realpath "$1") scene=$(realpath "$2")
 folder=${3:-}
@@ -93,6 +94,36 @@ before=$(ticks)
 xdotool sleep 2
 used=$(($(ticks) - before))
 [ "$used" -le 2 ] || fail "at rest it used $used ticks of 200"
+
+# How often threads other than the first have slept and woken.
+wakes() { cat /proc/"$viewer"/task/*/status | awk -v first="$viewer" '/^Pid:/ {id = $2}
+    /^voluntary_ctxt_switches:/ && id != first {n += $2} END {print n + 0}'; }
+rests() { # WHEN: neither CPU nor a single wake-up of a worker in two seconds
+    local ticks_before wakes_before
+    ticks_before=$(ticks) wakes_before=$(wakes)
+    xdotool sleep 2
+    [ "$(wakes)" = "$wakes_before" ] || fail "$1 its threads woke $(($(wakes) - wakes_before)) times"
+    [ "$(($(ticks) - ticks_before))" -le 2 ] || fail "$1 it used $(($(ticks) - ticks_before)) ticks of 200"
+}
+rests 'at rest'
+
+# Paused, and as an icon (what a window manager would say), with much left to render.
+for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14; do xdotool key x; done
+xdotool key p
+settle
+xdotool sleep 3
+rests 'paused'
+xdotool key p
+settle
+wm_state() { python3 "$here/wm_state.py" "$window" "$1"; }
+wm_state iconic
+xdotool sleep 1
+rests 'as an icon'
+wm_state normal
+before=$(ticks)
+until [ "$(($(ticks) - before))" -gt 20 ]; do xdotool sleep 0.1; done # It goes on.
+xdotool key r # 16 samples again
+settle
 
 # Bookmarks stand beside the scene; what the clipboard holds comes back.
 settle
