@@ -142,7 +142,7 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
         return false;
     fl_params_from_scene(&out->params, out->scene, out->state.is_exact || cli_has(options, CLI_OPT_DIALECT_EXACT));
     if (out->state.scene_path)
-        fl_saved_state_apply(&out->state, &out->params);
+        fl_saved_state_apply(&out->state, out->scene, &out->params);
     apply_options(options, &out->params);
     if (!fl_params_check(&out->params, out->diags))
         return false;

@@ -130,7 +130,7 @@ bool cli_picture_save(const cli_picture *picture, const cli_scene *scene, const 
     if (!fl_image_format_for(path, diags, &format))
         return false;
     fl_state_texts texts;
-    fl_state_texts_fill(&texts, scene->path, scene->scene->dialect, &scene->params, &picture->progress, picture->rgb);
+    fl_state_texts_fill(&texts, scene->path, scene->scene, &scene->params, &picture->progress, picture->rgb);
     fl_image image = {.width = picture->width, .height = picture->height, .format = format};
     uint8_t *bytes = NULL;
     if (format == FL_PIXEL_FLOAT) {

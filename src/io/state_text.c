@@ -238,13 +238,27 @@ static bool settings_read(const char *text, settings *out)
     return true;
 }
 
-void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, fl_dialect dialect,
+/* Empty: they are the scene's. */
+static void lights_text(const fl_params *params, const fl_scene *scene, char out[FL_LIGHT_TEXT_MAX])
+{
+    char own[FL_LIGHT_TEXT_MAX];
+    out[0] = 0;
+    if (!scene || params->light_count != scene->light_count || params->lights == scene->lights)
+        return;
+    fl_lights_text(params->lights, params->light_count, out);
+    fl_lights_text(scene->lights, scene->light_count, own);
+    if (strcmp(out, own) == 0)
+        out[0] = 0;
+}
+
+void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, const fl_scene *scene,
                          const fl_params *params, const fl_progress *progress,
                          const float *mean_rgb)
 {
     fl_camera_scene_text(&params->camera, "snapshot", out->view, sizeof out->view);
     fl_camera_options_text(&params->camera, out->options, sizeof out->options);
-    settings s = settings_of(params, dialect);
+    settings s = settings_of(params, scene ? scene->dialect : FL_DIALECT_FIRSTLIGHT);
+    lights_text(params, scene, out->lights);
     settings_text(&s, out->settings, sizeof out->settings);
     snprintf(out->samples, sizeof out->samples, "%u", progress->complete_samples);
     const fl_error_estimate *error = &progress->error;
@@ -263,6 +277,7 @@ void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, fl_dialect
         {"firstlight:samples", out->samples},
         {"firstlight:rmse", out->error},
         {"firstlight:film_sha256", out->film_sha256},
+        {"firstlight:lights", out->lights},
     };
     memcpy(out->items, items, sizeof items);
 }
@@ -297,7 +312,7 @@ static char *find_scene(const char *image_path, const char *scene)
     return path;
 }
 
-static bool read_state(const char *path, char *const texts[4], fl_saved_state *out, fl_diags *diags)
+static bool read_state(const char *path, char *const texts[5], fl_saved_state *out, fl_diags *diags)
 {
     fl_loc loc = {.file = path};
     settings s;
@@ -336,13 +351,17 @@ static bool read_state(const char *path, char *const texts[4], fl_saved_state *o
 bool fl_saved_state_load(const char *path, fl_saved_state *out, fl_diags *diags)
 {
     static const char *const keys[] = {"firstlight:scene", "firstlight:view", "firstlight:settings",
-                                       "firstlight:samples"};
+                                       "firstlight:samples", "firstlight:lights"};
     char *texts[FL_COUNT_OF(keys)] = {0};
     bool is_fine = true;
     *out = (fl_saved_state){0};
     for (size_t i = 0; i < FL_COUNT_OF(keys) && is_fine; i++)
         is_fine = fl_image_load_text(path, keys[i], (fl_loc){.file = path}, diags, &texts[i]);
     is_fine = is_fine && read_state(path, texts, out, diags);
+    if (is_fine) {
+        out->lights = texts[4];
+        texts[4] = NULL;
+    }
     for (size_t i = 0; i < FL_COUNT_OF(keys); i++)
         free(texts[i]);
     return is_fine;
@@ -351,10 +370,22 @@ bool fl_saved_state_load(const char *path, fl_saved_state *out, fl_diags *diags)
 void fl_saved_state_deinit(fl_saved_state *state)
 {
     free(state->scene_path);
+    free(state->lights);
     *state = (fl_saved_state){0};
 }
 
-void fl_saved_state_apply(const fl_saved_state *state, fl_params *params)
+static void apply_lights(const char *text, fl_scene *scene, fl_params *params)
+{
+    uint32_t count = params->light_count;
+    fl_light *lights = count ? fl_arena_alloc(&scene->arena, count, sizeof *lights) : NULL;
+    if (!lights)
+        return;
+    memcpy(lights, params->lights, count * sizeof *lights);
+    if (fl_lights_read(text, lights, count))
+        params->lights = lights;
+}
+
+void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_params *params)
 {
     const fl_params *from = &state->params;
     params->camera = from->camera;
@@ -372,4 +403,6 @@ void fl_saved_state_apply(const fl_saved_state *state, fl_params *params)
     params->sampler = from->sampler;
     params->seed = from->seed;
     params->solver = from->solver;
+    if (state->lights && state->lights[0])
+        apply_lights(state->lights, scene, params);
 }

@@ -121,6 +121,12 @@ static void ask_snapshot(app *a)
     vw_session *session = &a->session;
     fl_render_progress(session->render, &session->progress);
     double mean = session->progress.mean_samples;
+    /* The preview of a light is never saved: its whole picture is made first. */
+    bool was_preview = vw_session_end_mix(session);
+    if (was_preview && !vw_session_restart(session, &a->diags)) {
+        show_error(a);
+        return;
+    }
     session->exact_samples = (uint32_t)fl_max(1.0, ceil(mean));
     vw_session_set_limits(session);
     a->wants_refresh = true;
@@ -128,7 +134,7 @@ static void ask_snapshot(app *a)
 
 static void print_camera(app *a)
 {
-    char text[2 * FL_STATE_TEXT_MAX];
+    char text[2 * FL_STATE_TEXT_MAX + FL_LIGHT_TEXT_MAX];
     vw_session_copy(&a->session, text, sizeof text);
     a->platform->ops->set_clipboard(a->platform, text);
     if (!a->options->is_quiet) {
@@ -355,6 +361,8 @@ static double time_to_sleep(const app *a)
         earlier(a->restart_ms == UINT64_MAX ? UINT64_MAX : restart_from_ms(a), a->reload_ms);
     if (vw_input_is_moving(&session->input))
         until = earlier(until, vw_input_next_tick_ms(&session->input));
+    if (session->state.is_mixing)
+        until = earlier(until, session->state.mix_until_ms);
     if (vw_state_message(&session->state))
         until = earlier(until, session->state.message_until_ms);
     if (session->progress.state == FL_RENDER_RUNNING || session->exact_samples)

@@ -9,7 +9,7 @@
 #include "io/files.h"
 #include "io/state_text.h"
 
-enum { PATH_BYTES = 1200, FILE_BYTES = 16384 };
+enum { PATH_BYTES = 1200, FILE_BYTES = 16384 + VW_SLOT_COUNT * FL_LIGHT_TEXT_MAX };
 
 static const char header[] = "firstlight 1\n"
                              "# Bookmarks: key 1 to 9 goes there, Ctrl with it writes this file.\n";
@@ -55,6 +55,23 @@ static void take_scene_views(vw_bookmarks *bookmarks, const fl_scene *scene)
     }
 }
 
+/* The comments that are ours. */
+static void read_lights(vw_bookmarks *bookmarks, const char *text)
+{
+    static const char word[] = "# lights ";
+    for (const char *at = text; (at = strstr(at, word)); at += sizeof word - 1) {
+        const char *numbers = at + sizeof word - 1;
+        char name[2] = {numbers[0], 0};
+        uint32_t slot = slot_of(name);
+        size_t bytes = strcspn(numbers, "\r\n");
+        if ((at != text && at[-1] != '\n') || slot == VW_SLOT_COUNT || bytes < 3 ||
+            bytes - 2 >= FL_LIGHT_TEXT_MAX)
+            continue;
+        memcpy(bookmarks->lights[slot], numbers + 2, bytes - 2);
+        bookmarks->lights[slot][bytes - 2] = 0;
+    }
+}
+
 static bool read_file(vw_bookmarks *bookmarks, const char *path, fl_diags *diags)
 {
     size_t bytes;
@@ -64,6 +81,8 @@ static bool read_file(vw_bookmarks *bookmarks, const char *path, fl_diags *diags
         return false;
     fl_scene *scene =
         fl_scene_parse(text, bytes, path, &(fl_parse_options){0}, &fl_files_on_disk, diags);
+    if (scene)
+        read_lights(bookmarks, text);
     free(text);
     if (!scene)
         return false;
@@ -98,6 +117,9 @@ static bool write_file(const vw_bookmarks *bookmarks, const char *scene_path, fl
         if (bookmarks->is_set[slot])
             length += fl_camera_scene_text(&bookmarks->cameras[slot], name, text + length,
                                            sizeof text - length);
+        if (bookmarks->is_set[slot] && bookmarks->lights[slot][0])
+            length += (size_t)snprintf(text + length, sizeof text - length, "# lights %s %s\n",
+                                       name, bookmarks->lights[slot]);
         FL_ASSERT(length < sizeof text);
     }
     if (!path_of(scene_path, path))
@@ -106,10 +128,11 @@ static bool write_file(const vw_bookmarks *bookmarks, const char *scene_path, fl
 }
 
 bool vw_bookmarks_store(vw_bookmarks *bookmarks, uint32_t slot, const fl_camera *camera,
-                        const char *scene_path, fl_diags *diags)
+                        const char *lights, const char *scene_path, fl_diags *diags)
 {
     FL_ASSERT(slot >= 1 && slot <= VW_SLOT_COUNT);
     put(bookmarks, slot - 1, camera, false);
+    snprintf(bookmarks->lights[slot - 1], FL_LIGHT_TEXT_MAX, "%s", lights);
     if (!scene_path)
         return true;
     if (bookmarks->is_broken)
@@ -123,4 +146,9 @@ const fl_camera *vw_bookmarks_find(const vw_bookmarks *bookmarks, uint32_t slot)
 {
     bool is_there = slot >= 1 && slot <= VW_SLOT_COUNT && !is_empty(bookmarks, slot - 1);
     return is_there ? &bookmarks->cameras[slot - 1] : NULL;
+}
+
+const char *vw_bookmarks_lights(const vw_bookmarks *bookmarks, uint32_t slot)
+{
+    return slot >= 1 && slot <= VW_SLOT_COUNT ? bookmarks->lights[slot - 1] : "";
 }

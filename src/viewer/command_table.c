@@ -24,7 +24,8 @@ enum {
     WINDOW = VW_DIRTY_WINDOW,
     TONEMAP = VW_DIRTY_TONEMAP,
     LIMITS = VW_DIRTY_LIMITS,
-    CAMERA = VW_DIRTY_CAMERA
+    CAMERA = VW_DIRTY_CAMERA,
+    LIGHT = VW_DIRTY_LIGHT
 };
 
 /* name, group, bindings, repeats, dirty, help, run, value */
@@ -85,6 +86,22 @@ const vw_command vw_commands[] = {
     {"fov", VW_GROUP_LENS, {WHEEL(CTRL, 1)}, false, CAMERA | WINDOW,
      "field of view", vw_run_fov, vw_value_fov},
 
+    {"light", VW_GROUP_PICTURE, {KEY(0, Y, 1), KEY(SHIFT, Y, -1)}, false, WINDOW,
+     "pick a light to edit", vw_run_light_select, vw_value_light},
+    {"light-switch", VW_GROUP_PICTURE, {KEY(0, U, 1)}, false, LIGHT | WINDOW,
+     "that light off, on", vw_run_light_switch, NULL},
+    {"light-intensity", VW_GROUP_PICTURE, {KEY(0, UP, 1), KEY(0, DOWN, -1)}, true, LIGHT | WINDOW,
+     "that light brighter, darker", vw_run_light_intensity, NULL},
+    {"light-warmth", VW_GROUP_PICTURE, {KEY(0, RIGHT, 1), KEY(0, LEFT, -1)}, true, LIGHT | WINDOW,
+     "that light warmer, cooler", vw_run_light_warmth, NULL},
+    {"light-radius", VW_GROUP_PICTURE, {KEY(CTRL, UP, 1), KEY(CTRL, DOWN, -1)}, true,
+     CAMERA | WINDOW, "that light larger, smaller", vw_run_light_radius, NULL},
+    {"light-side", VW_GROUP_PICTURE, {KEY(SHIFT, RIGHT, 1), KEY(SHIFT, LEFT, -1)}, true,
+     CAMERA | WINDOW, "that light right, left", vw_run_light_side, NULL},
+    {"light-rise", VW_GROUP_PICTURE, {KEY(SHIFT, UP, 1), KEY(SHIFT, DOWN, -1)}, true,
+     CAMERA | WINDOW, "that light up, down", vw_run_light_rise, NULL},
+    {"light-push", VW_GROUP_PICTURE, {KEY(CTRL | SHIFT, UP, 1), KEY(CTRL | SHIFT, DOWN, -1)}, true,
+     CAMERA | WINDOW, "that light away, closer", vw_run_light_push, NULL},
     {"light-samples", VW_GROUP_PICTURE, {KEY(0, L, 1), KEY(SHIFT, L, -1)}, false, CAMERA | WINDOW,
      "samples of each light \303\2272, \303\2672", vw_run_light_samples, vw_value_light_samples},
     {"sample-cap", VW_GROUP_PICTURE, {KEY(0, X, 1), KEY(SHIFT, X, -1)}, false, LIMITS | WINDOW,

@@ -161,6 +161,15 @@ static bool run_trials(vw_lab *lab, const vw_lab_question *question, vw_lab_answ
     return is_fine;
 }
 
+/* The scene at another size, with the lights as they are edited. */
+static bool scale_scene(const vw_lab_question *question, fl_scene *scene, fl_diags *diags)
+{
+    const vw_look *look = &question->state.look;
+    if (look->light_count > 0 && look->light_count == scene->light_count)
+        memcpy(scene->lights, look->lights, look->light_count * sizeof *look->lights);
+    return fl_scene_map(scene, question->scale, fl_v3(0.0, 0.0, 0.0), diags);
+}
+
 /* Render the question's scene at another size. */
 static bool render_scaled(vw_lab *lab, const vw_lab_question *question, mean *out,
                           vw_lab_answer *answer)
@@ -170,17 +179,17 @@ static bool render_scaled(vw_lab *lab, const vw_lab_question *question, mean *ou
     fl_compiled *compiled = NULL;
     const fl_geometry *geometry = &question->frames[0]->scene->geometry;
     if (question->loader->load(question->loader->context, question->path, &scene, &diags) &&
-        scene.scene && fl_scene_map(scene.scene, question->scale, fl_v3(0.0, 0.0, 0.0), &diags)) {
+        scene.scene && scale_scene(question, scene.scene, &diags)) {
         fl_compile_options options = {
             .accel = geometry->accel, .has_isa = true, .isa = question->frames[0]->scene->isa};
         compiled = fl_compile(scene.scene, &options, NULL, &diags);
     }
     bool is_fine = compiled != NULL;
     if (is_fine) {
-        fl_params params, base = question->base;
-        base.lights = scene.scene->lights;
-        base.light_count = scene.scene->light_count;
-        vw_state_params(&question->state, &base, &params);
+        fl_params params;
+        vw_state_params(&question->state, &question->base, &params);
+        params.lights = scene.scene->lights;
+        params.light_count = scene.scene->light_count;
         params.camera.center = fl_v3_scale(params.camera.center, question->scale);
         params.camera.aperture *= question->scale;
         params.camera.focus *= question->scale;

@@ -112,8 +112,8 @@ static void on_focus(GLFWwindow *window, int is_focused)
 
 static void on_iconify(GLFWwindow *window, int is_iconified)
 {
-    push(window, &(vw_event){.kind = VW_EVENT_ICONIFY,
-                             .action = is_iconified ? GLFW_PRESS : GLFW_RELEASE});
+    push(window,
+         &(vw_event){.kind = VW_EVENT_ICONIFY, .action = is_iconified ? GLFW_PRESS : GLFW_RELEASE});
 }
 
 static void on_close(GLFWwindow *window)

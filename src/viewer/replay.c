@@ -267,6 +267,7 @@ static bool render_exactly(replay *r, uint32_t samples)
 static bool run_snapshot(replay *r, const vw_log_entry *entry)
 {
     vw_session *session = &r->session;
+    r->is_stale |= vw_session_end_mix(session); /* A preview is never saved. */
     if (!render_exactly(r, entry->samples))
         return false;
     fl_progress progress;

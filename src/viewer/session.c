@@ -61,16 +61,21 @@ bool vw_session_open(vw_session *session, const vw_options *options, const char 
     return true;
 }
 
+static fl_render_options render_options(const vw_session *session)
+{
+    return (fl_render_options){.thread_count = session->options->thread_count,
+                               .is_low_priority = session->options->is_low_priority,
+                               .smooths_display = true,
+                               .notify = session->notify,
+                               .notify_context = session->notify_context};
+}
+
 bool vw_session_start(vw_session *session, void (*notify)(void *context), void *notify_context,
                       fl_diags *diags)
 {
-    fl_render_options render = {.thread_count = session->options->thread_count,
-                                .is_low_priority = session->options->is_low_priority,
-                                .smooths_display = true,
-                                .notify = notify,
-                                .notify_context = notify_context};
     session->notify = notify;
     session->notify_context = notify_context;
+    fl_render_options render = render_options(session);
     session->render = fl_render_create(&render, diags);
     if (!session->render)
         return false;
@@ -81,6 +86,7 @@ bool vw_session_start(vw_session *session, void (*notify)(void *context), void *
 void vw_session_close(vw_session *session)
 {
     fl_render_destroy(session->render);
+    vw_mix_end(&session->mix);
     vw_show_deinit(&session->show);
     vw_insight_deinit(&session->insight);
     scene_deinit(&session->scene);
@@ -89,12 +95,53 @@ void vw_session_close(vw_session *session)
     *session = (vw_session){0};
 }
 
+static fl_tonemap tonemap_of(const vw_session *session)
+{
+    return (fl_tonemap){.exposure_ev = session->state.look.camera.exposure_ev,
+                        .truncates = session->scene.params.exact.truncate_bytes};
+}
+
+/* The mix stays on the screen until there is something of the whole: what the render shows till
+ * then lacks a light. It is taken as seen. */
+static void forget_parts(vw_session *session)
+{
+    fl_progress progress;
+    vw_mix_end(&session->mix);
+    fl_tonemap tonemap = tonemap_of(session);
+    uint8_t *unseen = malloc(session->rgba_bytes);
+    uint64_t revision = 0;
+    if (unseen &&
+        fl_render_display(session->render, &revision, &tonemap, unseen, session->rgba_bytes,
+                          &progress) &&
+        progress.generation < progress.newest_generation)
+        session->revision = revision;
+    free(unseen);
+}
+
 bool vw_session_restart(vw_session *session, fl_diags *diags)
 {
     fl_params params;
     vw_state_params(&session->state, &session->scene.params, &params);
     session->show.is_asked = false;
-    return fl_render_restart(session->render, session->scene.compiled, &params, diags);
+    if (session->state.is_mixing) {
+        fl_render_options options = render_options(session);
+        bool is_begun = vw_mix_restart(&session->mix, session->render, session->scene.compiled,
+                                       &params, session->state.light, &options, diags);
+        vw_session_set_limits(session);
+        return is_begun;
+    }
+    if (!fl_render_restart(session->render, session->scene.compiled, &params, diags))
+        return false;
+    if (session->mix.unit)
+        forget_parts(session);
+    return true;
+}
+
+bool vw_session_end_mix(vw_session *session)
+{
+    bool was_mixing = session->state.is_mixing;
+    session->state.is_mixing = false;
+    return was_mixing;
 }
 
 void vw_session_set_limits(vw_session *session)
@@ -103,9 +150,12 @@ void vw_session_set_limits(vw_session *session)
     limits.samples = session->state.look.sample_cap;
     if (session->exact_samples)
         limits = (fl_render_limits){.samples = session->exact_samples};
-    fl_render_set_limits(session->render, &limits);
     bool rests = session->state.is_paused || session->state.is_hidden;
-    fl_render_set_paused(session->render, rests && !session->exact_samples);
+    fl_render *const renders[] = {session->render, session->mix.unit};
+    for (size_t i = 0; i < FL_COUNT_OF(renders) && renders[i]; i++) {
+        fl_render_set_limits(renders[i], &limits);
+        fl_render_set_paused(renders[i], rests && !session->exact_samples);
+    }
 }
 
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
@@ -118,6 +168,7 @@ bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
         return false;
     scene_deinit(&session->scene);
     session->scene = scene;
+    session->state.is_mixing = false;
     session->show.is_asked = false;
     if (is_same) {
         vw_state_rebase(&session->state, &scene.params, scene.compiled, sample_cap(session));
@@ -130,10 +181,38 @@ bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
     return true;
 }
 
+static bool reserve_bytes(vw_session *session, size_t bytes, fl_diags *diags)
+{
+    if (bytes <= session->rgba_bytes)
+        return true;
+    uint8_t *rgba = realloc(session->rgba, bytes);
+    if (!rgba)
+        return fl_out_of_memory(diags, "the picture");
+    session->rgba = rgba;
+    session->rgba_bytes = bytes;
+    return true;
+}
+
+static bool refresh_mix(vw_session *session, fl_diags *diags)
+{
+    fl_progress progress;
+    vw_mix *mix = &session->mix;
+    fl_vec3 color = session->state.look.lights[mix->light].color;
+    if (!vw_mix_take(mix, session->render, color, &progress))
+        return false;
+    size_t pixels = (size_t)progress.width * progress.height;
+    if (!reserve_bytes(session, 4 * pixels, diags))
+        return false;
+    fl_tonemap tonemap = tonemap_of(session);
+    fl_tonemap_rgba8(&tonemap, mix->rgb[0], pixels, session->rgba);
+    session->progress = progress;
+    session->revision = 1; /* Not 0: there is a picture. */
+    return true;
+}
+
 static bool is_newer(vw_session *session)
 {
-    fl_tonemap tonemap = {.exposure_ev = session->state.look.camera.exposure_ev,
-                          .truncates = session->scene.params.exact.truncate_bytes};
+    fl_tonemap tonemap = tonemap_of(session);
     return fl_render_display(session->render, &session->revision, &tonemap, session->rgba,
                              session->rgba_bytes, &session->progress);
 }
@@ -141,17 +220,13 @@ static bool is_newer(vw_session *session)
 /* Newer bytes of the picture, with room made for them. */
 static bool refresh_picture(vw_session *session, fl_diags *diags)
 {
+    if (session->mix.unit)
+        return refresh_mix(session, diags);
     if (is_newer(session))
         return true;
     size_t needed = (size_t)session->progress.width * session->progress.height * 4;
-    if (needed <= session->rgba_bytes)
-        return false;
-    uint8_t *rgba = realloc(session->rgba, needed);
-    if (!rgba)
-        return fl_out_of_memory(diags, "the picture");
-    session->rgba = rgba;
-    session->rgba_bytes = needed;
-    return is_newer(session);
+    return needed > session->rgba_bytes && reserve_bytes(session, needed, diags) &&
+           is_newer(session);
 }
 
 bool vw_session_refresh(vw_session *session, fl_diags *diags)
@@ -192,8 +267,7 @@ static uint8_t *tonemapped(const vw_session *session, const float *rgb, size_t p
     uint8_t *bytes = malloc(pixels * 4);
     if (!bytes)
         return NULL;
-    fl_tonemap tonemap = {.exposure_ev = session->state.look.camera.exposure_ev,
-                          .truncates = session->scene.params.exact.truncate_bytes};
+    fl_tonemap tonemap = tonemap_of(session);
     fl_tonemap_rgba8(&tonemap, rgb, pixels, bytes);
     for (size_t i = 0; i < pixels; i++)
         memmove(bytes + 3 * i, bytes + 4 * i, 3);
@@ -211,8 +285,7 @@ bool vw_session_save(const vw_session *session, const char *path, const float *r
     vw_state_params(&session->state, &session->scene.params, &params);
     const fl_scene *scene = session->scene.scene;
     fl_state_texts texts;
-    fl_state_texts_fill(&texts, session->scene_path, scene ? scene->dialect : FL_DIALECT_FIRSTLIGHT,
-                        &params, progress, rgb);
+    fl_state_texts_fill(&texts, session->scene_path, scene, &params, progress, rgb);
     fl_image image = {.width = progress->width, .height = progress->height, .format = format};
     uint8_t *bytes = NULL;
     if (format == FL_PIXEL_FLOAT) {

@@ -11,6 +11,7 @@
 #include "viewer/history.h"
 #include "viewer/input.h"
 #include "viewer/insight.h"
+#include "viewer/mix.h"
 #include "viewer/show.h"
 #include "viewer/viewer.h"
 
@@ -27,6 +28,7 @@ typedef struct vw_session {
     uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
+    vw_mix mix; /**< Of state.is_mixing. */
     vw_history history;
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */
@@ -100,6 +102,10 @@ float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags 
 /** Keep the newest errors of `diags` as error_text and empty the list. */
 void vw_session_take_error(vw_session *session, fl_diags *diags);
 void vw_session_clear_error(vw_session *session);
+
+/** A snapshot is to be made: the colour of a light is edited no longer. True: a restart is needed.
+ */
+bool vw_session_end_mix(vw_session *session);
 
 /** Private to session*.c. */
 void vw_show_deinit(vw_show *show);

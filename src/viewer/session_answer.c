@@ -76,6 +76,33 @@ static vw_dirty take_camera(vw_state *state, const fl_camera *camera)
     return (vw_dirty)(VW_DIRTY_CAMERA | VW_DIRTY_TONEMAP);
 }
 
+/* Lights in scene text, when they are as many and of the same kinds. */
+static bool read_lights(const char *text, vw_look *look)
+{
+    static const char first[] = "firstlight 1\n";
+    const char *block = text ? strstr(text, "Lights {") : NULL;
+    char whole[sizeof first + VW_PATH_MAX + FL_LIGHT_TEXT_MAX];
+    int bytes = block ? snprintf(whole, sizeof whole, "%s%s", first, block) : 0;
+    if (bytes <= 0 || (size_t)bytes >= sizeof whole)
+        return false;
+    fl_diags diags = {0};
+    fl_scene *scene =
+        fl_scene_parse(whole, (size_t)bytes, "lights", &(fl_parse_options){0}, NULL, &diags);
+    fl_diags_deinit(&diags);
+    bool fits = scene && scene->light_count > 0 && scene->light_count == look->light_count;
+    for (uint32_t i = 0; fits && i < look->light_count; i++)
+        fits = scene->lights[i].kind == look->lights[i].kind;
+    for (uint32_t i = 0; fits && i < look->light_count; i++) {
+        fl_loc loc = look->lights[i].loc;
+        look->lights[i] = scene->lights[i];
+        look->lights[i].loc = loc;
+    }
+    if (fits)
+        vw_look_take_lit_colors(look);
+    fl_scene_destroy(scene);
+    return fits;
+}
+
 vw_dirty vw_session_paste(vw_session *session, const char *text)
 {
     vw_state *state = &session->state;
@@ -93,7 +120,8 @@ vw_dirty vw_session_paste(vw_session *session, const char *text)
         return VW_DIRTY_WINDOW;
     }
     vw_dirty dirty = take_camera(state, &camera);
-    vw_state_say(state, "camera pasted");
+    bool has_lights = read_lights(text, &state->look);
+    vw_state_say(state, has_lights ? "camera and lights pasted" : "camera pasted");
     vw_history_note(&session->history, state, NULL, false);
     return dirty;
 }
@@ -105,7 +133,14 @@ size_t vw_session_copy(const vw_session *session, char *out, size_t out_bytes)
     fl_camera_options_text(camera, options, sizeof options);
     fl_camera_scene_text(camera, NULL, block, sizeof block);
     int length = snprintf(out, out_bytes, "# %s\n%s", options, block);
-    return length > 0 ? (size_t)length : 0;
+    size_t done = length > 0 ? (size_t)length : 0;
+    const vw_state *state = &session->state;
+    if (vw_lights_are_same(&state->look, &state->start))
+        return done;
+    bool has_room = done < out_bytes;
+    return done + fl_lights_scene_text(state->look.lights, state->look.light_count,
+                                       has_room ? out + done : NULL,
+                                       has_room ? out_bytes - done : 0);
 }
 
 static vw_dirty recall(vw_session *session)
@@ -117,6 +152,11 @@ static vw_dirty recall(vw_session *session)
         return VW_DIRTY_WINDOW;
     }
     vw_dirty dirty = take_camera(state, camera);
+    /* A bookmark without lights has the scene's. */
+    const char *lights = vw_bookmarks_lights(&session->bookmarks, state->slot);
+    vw_look_take_lights(&state->look, &state->start);
+    if (fl_lights_read(lights, state->look.lights, state->look.light_count))
+        vw_look_take_lit_colors(&state->look);
     vw_state_say(state, "bookmark %u", state->slot);
     return dirty;
 }
@@ -124,10 +164,26 @@ static vw_dirty recall(vw_session *session)
 static vw_dirty store(vw_session *session, fl_diags *diags)
 {
     vw_state *state = &session->state;
-    if (vw_bookmarks_store(&session->bookmarks, state->slot, &state->look.camera,
+    char lights[FL_LIGHT_TEXT_MAX] = "";
+    if (!vw_lights_are_same(&state->look, &state->start))
+        fl_lights_text(state->look.lights, state->look.light_count, lights);
+    if (vw_bookmarks_store(&session->bookmarks, state->slot, &state->look.camera, lights,
                            session->is_replay ? NULL : session->scene_path, diags))
         vw_state_say(state, "bookmark %u set", state->slot);
     return VW_DIRTY_WINDOW;
+}
+
+/* The selected light has another colour. The same light again: another sum of what there is. */
+static unsigned mix_light(vw_session *session, unsigned dirty)
+{
+    vw_state *state = &session->state;
+    if (!vw_mix_is_possible(session->scene.compiled))
+        return VW_DIRTY_CAMERA;
+    bool goes_on = state->is_mixing && session->mix.unit && session->mix.light == state->light &&
+                   !(dirty & (VW_DIRTY_CAMERA | VW_DIRTY_SCENE));
+    state->is_mixing = true;
+    state->mix_until_ms = state->now_ms + VW_MIX_MS;
+    return goes_on ? VW_DIRTY_TONEMAP : VW_DIRTY_CAMERA;
 }
 
 vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
@@ -142,7 +198,9 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         all |= recall(session);
     if (dirty & VW_DIRTY_STORE)
         all |= store(session, diags);
-    if (dirty & VW_DIRTY_PIN)
+    if ((dirty & VW_DIRTY_PIN) && session->mix.unit)
+        vw_state_say(state, "a preview is not pinned");
+    else if (dirty & VW_DIRTY_PIN)
         all |= vw_show_toggle_pin(session, diags);
     if (dirty & VW_DIRTY_RAYS)
         all |= vw_insight_rays(session, diags);
@@ -157,6 +215,13 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
     if (dirty & VW_DIRTY_REDO)
         all |= vw_history_redo(&session->history, state);
     session->input.is_racking = state->rack_left > 0;
+    if (all & VW_DIRTY_LIGHT) {
+        all = (all & ~(unsigned)VW_DIRTY_LIGHT) | mix_light(session, all);
+    } else if (state->is_mixing && (state->now_ms >= state->mix_until_ms ||
+                                    (all & (VW_DIRTY_CAMERA | VW_DIRTY_SCENE)))) {
+        state->is_mixing = false;
+        all |= VW_DIRTY_CAMERA;
+    }
     if (all & (VW_DIRTY_CAMERA | VW_DIRTY_SHOW | VW_DIRTY_SCENE))
         session->show.is_asked = false;
     session->show.is_stale |= (all & VW_DIRTY_SHOW) != 0;

@@ -136,6 +136,8 @@ void vw_session_notes(vw_session *session, char *out, size_t out_bytes)
     out[0] = 0;
     fl_params params;
     vw_state_params(state, &session->scene.params, &params);
+    if (state->is_mixing)
+        line(&l, "preview of light %u", state->light + 1);
     if (state->layer != VW_LAYER_BEAUTY)
         layer_line(session, &l);
     if (state->stress != VW_STRESS_OFF)

@@ -78,7 +78,7 @@ static bool has_values(const vw_session *session)
 static bool has_pin(const vw_session *session)
 {
     const vw_pin *pin = &session->show.pin;
-    return pin->rgb && pin->width == session->progress.width &&
+    return pin->rgb && !session->mix.unit && pin->width == session->progress.width &&
            pin->height == session->progress.height;
 }
 
@@ -270,5 +270,7 @@ void vw_session_settle(vw_session *session, fl_diags *diags)
     vw_insight_follow(session, true, diags);
     if (session->insight.lab)
         vw_lab_wait(session->insight.lab);
+    if (session->mix.unit)
+        fl_render_wait(session->mix.unit, -1.0);
     session->show.is_stale = true;
 }

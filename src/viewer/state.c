@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 const char *const vw_layer_names[VW_LAYER_COUNT] = {
     "beauty", "depth", "normal", "albedo", "samples", "error", "cost", "blur", "objects", "branch"};
@@ -26,6 +27,12 @@ static void set_scene(vw_state *state, const fl_params *params, const fl_compile
                              .depth_limit = params->depth_limit,
                              .light_samples = params->light_samples,
                              .sample_cap = sample_cap};
+    if (params->light_count <= VW_LIGHTS_MAX)
+        state->start.light_count = params->light_count;
+    for (uint32_t i = 0; i < state->start.light_count; i++) {
+        state->start.lights[i] = params->lights[i];
+        state->start.lit_colors[i] = params->lights[i].color;
+    }
     state->scene_light_samples = largest_light_samples(params);
     double extent = compiled ? compiled->geometry.extent : 1.0, focus = params->camera.focus;
     state->scene_scale = isfinite(extent) && extent > 0.0 ? extent : 1.0;
@@ -65,10 +72,24 @@ static bool is_same_camera(const fl_camera *a, const fl_camera *b)
            a->blade_rotation_deg == b->blade_rotation_deg && a->exposure_ev == b->exposure_ev;
 }
 
+bool vw_lights_are_same(const vw_look *a, const vw_look *b)
+{
+    bool is_same = a->light_count == b->light_count;
+    for (uint32_t i = 0; is_same && i < a->light_count; i++) {
+        const fl_light *p = &a->lights[i], *q = &b->lights[i];
+        is_same = p->kind == q->kind && is_same_point(p->position, q->position) &&
+                  is_same_point(p->direction, q->direction) && p->radius == q->radius &&
+                  is_same_point(p->color, q->color) &&
+                  is_same_point(a->lit_colors[i], b->lit_colors[i]);
+    }
+    return is_same;
+}
+
 bool vw_look_is_same(const vw_look *a, const vw_look *b)
 {
     return is_same_camera(&a->camera, &b->camera) && a->depth_limit == b->depth_limit &&
-           a->light_samples == b->light_samples && a->sample_cap == b->sample_cap;
+           a->light_samples == b->light_samples && a->sample_cap == b->sample_cap &&
+           vw_lights_are_same(a, b);
 }
 
 /* The picture that the parameters ask for, in a window that may have another size. */
@@ -107,6 +128,22 @@ void vw_state_init(vw_state *state, const fl_params *params, const fl_compiled *
     set_picture(state, params, wants_follow);
 }
 
+void vw_look_take_lights(vw_look *look, const vw_look *from)
+{
+    look->light_count = from->light_count;
+    memcpy(look->lights, from->lights, sizeof look->lights);
+    memcpy(look->lit_colors, from->lit_colors, sizeof look->lit_colors);
+}
+
+void vw_look_take_lit_colors(vw_look *look)
+{
+    for (uint32_t i = 0; i < look->light_count; i++) {
+        fl_vec3 color = look->lights[i].color;
+        if (color.x != 0.0 || color.y != 0.0 || color.z != 0.0)
+            look->lit_colors[i] = color;
+    }
+}
+
 void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled *compiled,
                      uint32_t sample_cap)
 {
@@ -118,6 +155,10 @@ void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled
         state->look.depth_limit = state->start.depth_limit;
     if (state->look.light_samples == before.light_samples)
         state->look.light_samples = state->start.light_samples;
+    if (vw_lights_are_same(&state->look, &before) ||
+        state->look.light_count != state->start.light_count)
+        vw_look_take_lights(&state->look, &state->start);
+    state->light = fl_min_u32(state->light, fl_max_u32(state->look.light_count, 1) - 1);
     set_picture(state, params, state->follows_window);
 }
 
@@ -127,6 +168,8 @@ void vw_state_params(const vw_state *state, const fl_params *base, fl_params *ou
     out_params->camera = state->look.camera;
     out_params->depth_limit = state->look.depth_limit;
     out_params->light_samples = state->look.light_samples;
+    if (state->look.light_count > 0)
+        out_params->lights = state->look.lights;
     if (state->follows_window) {
         out_params->width = state->picture_width;
         out_params->height = state->picture_height;

@@ -16,6 +16,8 @@ enum {
     VW_MESSAGE_MS = 2500, /**< How long a message stays. */
     VW_QUIT_MS = 3000,    /**< Within which the second Esc quits. */
     VW_SLOT_COUNT = 9,    /**< Bookmarks. */
+    VW_LIGHTS_MAX = 16,   /**< In scenes with more they cannot be edited. */
+    VW_MIX_MS = 700,      /**< A light that rests so long is edited no longer. */
     VW_HELP_PAGES = 3
 };
 #define VW_FOV_MIN_DEG     0.01
@@ -104,7 +106,9 @@ typedef enum vw_dirty {
     VW_DIRTY_STORE = 1 << 14,
     VW_DIRTY_PASTE = 1 << 15, /**< The camera that the clipboard holds. */
     VW_DIRTY_PIN = 1 << 16,   /**< Keep or drop the picture as it is now. */
-    VW_DIRTY_RAYS = 1 << 17   /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
+    VW_DIRTY_RAYS = 1 << 17,  /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
+    /** The colour of the selected light; vw_session_answer turns it into TONEMAP or CAMERA. */
+    VW_DIRTY_LIGHT = 1 << 24
 } vw_dirty;
 
 /** What decides the picture: everything that R puts back. */
@@ -113,6 +117,9 @@ typedef struct vw_look {
     uint32_t depth_limit;
     uint32_t light_samples; /**< 0: each light's own. */
     uint32_t sample_cap;
+    uint32_t light_count; /**< 0: none that can be edited; the scene's own then. */
+    fl_light lights[VW_LIGHTS_MAX];
+    fl_vec3 lit_colors[VW_LIGHTS_MAX]; /**< What a light that is off (black) comes back to. */
 } vw_look;
 
 typedef struct vw_state {
@@ -131,6 +138,9 @@ typedef struct vw_state {
     double rack_from, rack_to;
     double rack_seconds;            /**< How long racking takes. */
     uint32_t rack_left, rack_ticks; /**< Steps of the clock to go; 0: not racking; of all. */
+    uint32_t light;                 /**< The one that is edited. */
+    bool is_mixing;                 /**< Its colour is: two pictures are mixed for the display. */
+    uint64_t mix_until_ms;          /**< When that ends if nothing else comes; log time. */
     uint32_t slot;                  /**< Bookmark that a command means, 1 to VW_SLOT_COUNT. */
     /* What is shown. */
     vw_layer layer;
@@ -146,7 +156,7 @@ typedef struct vw_state {
     /* Window. */
     uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
     bool is_hud_shown, is_paused;
-    bool is_hidden; /**< The window is iconified: nothing is rendered or drawn. */
+    bool is_hidden;         /**< The window is iconified: nothing is rendered or drawn. */
     uint32_t width, height; /**< Framebuffer, pixels. */
     bool follows_window;    /**< The picture takes the window's size; else it keeps its own and is
                                fitted in. */
@@ -182,6 +192,13 @@ const char *vw_state_message(const vw_state *state);
 /** Focus on a point at that distance along the viewing axis; not finite or <= 0: says that nothing
  * was hit. */
 vw_dirty vw_state_focus_at(vw_state *state, double depth);
+
+/** Whether both have the same lights; of other scenes: no. */
+bool vw_lights_are_same(const vw_look *a, const vw_look *b);
+
+/** Lights of another look of the same scene; and: a light that is on comes back to its colour. */
+void vw_look_take_lights(vw_look *look, const vw_look *from);
+void vw_look_take_lit_colors(vw_look *look);
 
 /** Whether both ask for the same picture, exposure and limits included. */
 bool vw_look_is_same(const vw_look *a, const vw_look *b);

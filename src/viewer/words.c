@@ -167,7 +167,8 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
                        uint32_t *count)
 {
     vw_status *s = item(out, count, "");
-    const char *word = state->is_paused                      ? "paused"
+    const char *word = state->is_mixing                      ? "preview"
+                       : state->is_paused                    ? "paused"
                        : progress->state == FL_RENDER_DONE   ? "done"
                        : progress->state == FL_RENDER_FAILED ? "out of memory"
                        : progress->complete_samples == 0     ? "first look"
@@ -276,6 +277,9 @@ static void add_strips(buffer *b)
          "two colours meet in what is sharp."},
         {"compare", "A picture is pinned (V) and the lens opened; wipe at the cursor and signed "
                     "difference (Shift+V)."},
+        {"lights",
+         "A light is picked (Y) and made brighter (Up): a mix of two pictures until the hand "
+         "rests; warmer (Right); the other one off (U)."},
         {"views", "Behind the picture: depth (F3), normals (F4), cost (F8), blur (F9)."},
         {"branches",
          "And albedo (F5), error (F7), objects (F10), the ray that adds most (Shift+F8)."},

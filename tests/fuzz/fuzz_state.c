@@ -84,7 +84,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
     MUST(scene);
     fl_params_from_scene(&params, scene, false);
     if (ok) {
-        fl_saved_state_apply(&state, &params);
+        fl_saved_state_apply(&state, scene, &params);
         if (fl_params_check(&params, &diags)) {
             MUST(params.sampler <= FL_SAMPLER_PADDED);
             MUST(params.solver <= FL_REVOLVE_MAX_STARTS);

@@ -42,12 +42,17 @@ enum {
     SHOWN = 1 << 16,
     RACK = 1 << 17,
     PANEL = 1 << 18,
-    OTHER = 1 << 19
+    LAMP = 1 << 19,
+    OTHER = 1 << 20
 };
 
 static fl_params params_of_test(void)
 {
-    static const fl_light light = {.kind = FL_LIGHT_DISK, .radius = 1.0, .samples = 4};
+    static const fl_light light = {.kind = FL_LIGHT_DISK,
+                                   .direction = {0, -1, 0},
+                                   .radius = 1.0,
+                                   .color = {1, 0.5, 0.25},
+                                   .samples = 4};
     return (fl_params){.camera = {.center = {0, 0, 5},
                                   .direction = {0, 0, -1},
                                   .up = {0, 1, 0},
@@ -113,16 +118,17 @@ static int changed_groups(const vw_state *a, const vw_state *b)
                       a->rays_y == b->rays_y && a->rays_sample == b->rays_sample
                   ? 0
                   : PANEL;
-    bool is_rest_same = x->projection == y->projection && x->blades == y->blades &&
-                        x->blade_rotation_deg == y->blade_rotation_deg && a->width == b->width &&
-                        a->height == b->height && a->picture_width == b->picture_width &&
-                        a->picture_height == b->picture_height && a->picture_x == b->picture_x &&
-                        a->picture_y == b->picture_y && a->picture_scale == b->picture_scale &&
-                        a->now_ms == b->now_ms && a->scene_scale == b->scene_scale &&
-                        a->scene_light_samples == b->scene_light_samples &&
-                        a->follows_window == b->follows_window &&
-                        is_same(a->scene_center, b->scene_center) &&
-                        memcmp(&a->start, &b->start, sizeof a->start) == 0;
+    groups |= vw_lights_are_same(&a->look, &b->look) ? 0 : LAMP;
+    bool is_rest_same =
+        a->light == b->light && x->projection == y->projection && x->blades == y->blades &&
+        x->blade_rotation_deg == y->blade_rotation_deg && a->width == b->width &&
+        a->height == b->height && a->picture_width == b->picture_width &&
+        a->picture_height == b->picture_height && a->picture_x == b->picture_x &&
+        a->picture_y == b->picture_y && a->picture_scale == b->picture_scale &&
+        a->now_ms == b->now_ms && a->scene_scale == b->scene_scale &&
+        a->scene_light_samples == b->scene_light_samples &&
+        a->follows_window == b->follows_window && is_same(a->scene_center, b->scene_center) &&
+        memcmp(&a->start, &b->start, sizeof a->start) == 0;
     return groups | (is_rest_same ? 0 : OTHER);
 }
 
@@ -157,6 +163,14 @@ static const struct {
     {"aperture", APERTURE, VW_DIRTY_CAMERA},
     {"lens", APERTURE | MESSAGE, VW_DIRTY_CAMERA},
     {"fov", FOV, VW_DIRTY_CAMERA},
+    {"light", MESSAGE, VW_DIRTY_WINDOW},
+    {"light-switch", LAMP | MESSAGE, VW_DIRTY_LIGHT},
+    {"light-intensity", LAMP | MESSAGE, VW_DIRTY_LIGHT},
+    {"light-warmth", LAMP | MESSAGE, VW_DIRTY_LIGHT},
+    {"light-radius", LAMP | MESSAGE, VW_DIRTY_CAMERA},
+    {"light-side", LAMP | MESSAGE, VW_DIRTY_CAMERA},
+    {"light-rise", LAMP | MESSAGE, VW_DIRTY_CAMERA},
+    {"light-push", LAMP | MESSAGE, VW_DIRTY_CAMERA},
     {"light-samples", LIGHT, VW_DIRTY_CAMERA},
     {"sample-cap", CAP, VW_DIRTY_LIMITS},
     {"depth", DEPTH, VW_DIRTY_CAMERA},

@@ -142,7 +142,7 @@ static void views_show_without_touching_the_film(void **unused)
     vw_session session;
     fl_diags diags = {0};
     open_session(&session, &options, VIEWER_TEST_SCENE);
-    session.exact_samples = 4;
+    session.exact_samples = 8;
     vw_session_set_limits(&session);
     assert_true(vw_session_restart(&session, &diags));
     assert_true(fl_render_wait(session.render, -1.0));
@@ -177,7 +177,7 @@ static void views_show_without_touching_the_film(void **unused)
     tap(&session, GLFW_KEY_V, 0, 10);
     assert_true(vw_session_refresh(&session, &diags));
     assert_true(session.show.has_difference && session.show.difference.largest == 0.0);
-    session.exact_samples = 5;
+    session.exact_samples = 9;
     vw_session_set_limits(&session);
     assert_true(fl_render_wait(session.render, -1.0));
     assert_true(vw_session_refresh(&session, &diags));

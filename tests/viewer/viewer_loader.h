@@ -33,7 +33,7 @@ static inline bool viewer_test_load(void *context, const char *path, vw_scene *o
     if (out->compiled) {
         fl_params_from_scene(&out->params, out->scene, state.is_exact);
         if (state.scene_path)
-            fl_saved_state_apply(&state, &out->params);
+            fl_saved_state_apply(&state, out->scene, &out->params);
         out->samples = state.samples;
     } else {
         fl_scene_destroy(out->scene);
