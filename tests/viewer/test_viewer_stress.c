@@ -55,7 +55,7 @@ static vw_event random_event(void)
         event.y = (double)draw(70) - 5.0;
         break;
     default:
-        event.kind = draw(30) ? VW_EVENT_KEY : VW_EVENT_FOCUS;
+        event.kind = draw(30) ? VW_EVENT_KEY : draw(2) ? VW_EVENT_FOCUS : VW_EVENT_ICONIFY;
         event.code = draw(3) ? GLFW_KEY_SPACE + (int)draw(64) : GLFW_KEY_ESCAPE + (int)draw(60);
         break;
     }
@@ -66,6 +66,7 @@ static void film_of(vw_session *session, char out_sha256[FL_SHA256_HEX + 1])
 {
     fl_diags diags = {0};
     fl_progress progress;
+    vw_session_end_mix(session); /* A preview is never saved. */
     session->exact_samples = 2;
     vw_session_set_limits(session);
     assert_true(vw_session_restart(session, &diags));
