@@ -123,7 +123,7 @@ static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
     else if (instance->kind == FL_OBJECT_SPHERE)
         t = hit_sphere(&g->spheres, instance->index, &b, own);
     else
-        t = hit_patch(&g->patches, instance->index, &b, own);
+        t = hit_patch(&g->patches, instance->index, &b, own, fl_wf_load(c->t + i));
     chunk_accept(c, i, t, instance->object, is_any);
 }
 
@@ -157,7 +157,7 @@ FL_INLINE void meet_baked(const job *j, chunk *c, uint32_t i, const bundle *b, f
         t = hit_plane(&g->planes, k, b, chunk_starts_on(c, i, object));
     } else if (kind == FL_OBJECT_SQUARE) {
         object = g->patches.object[k];
-        t = hit_patch(&g->patches, k, b, chunk_starts_on(c, i, object));
+        t = hit_patch(&g->patches, k, b, chunk_starts_on(c, i, object), fl_wf_load(c->t + i));
     } else {
         meet_revolution(j, c, i, b, k, g->revolutions.object[k], &g->revolutions.shift, is_any);
         return;

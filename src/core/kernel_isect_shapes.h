@@ -22,26 +22,33 @@ FL_INLINE fl_wf hit_plane(const fl_planes *p, uint32_t k, const bundle *b, fl_wm
  * exact chord. */
 FL_INLINE fl_wf hit_sphere(const fl_spheres *s, uint32_t k, const bundle *b, fl_wm own)
 {
+    const fl_wf none = fl_wf_set(-1.0f);
     fl_wf f[3] = {b->o[0] - s->cx[k], b->o[1] - s->cy[k], b->o[2] - s->cz[k]};
     fl_wf square = fl_wf_set(s->r[k]) * s->r[k];
     fl_wf dd = dot(b->d, b->d), fd = -dot(f, b->d), middle = fd / dd;
     fl_wf l[3] = {f[0] + middle * b->d[0], f[1] + middle * b->d[1], f[2] + middle * b->d[2]};
     fl_wf rest = square - dot(l, l);
     fl_wm meets = rest >= 0.0f;
+    if (!fl_wm_any(meets | own)) /* Most bundles are done here, without most of the divisions. */
+        return none;
     fl_wf root = fl_wf_sqrt(dd * fl_wf_max(rest, fl_wf_set(0.0f)));
     fl_wf q = fd + fl_wf_copysign(root, fd);
     fl_wf t0 = (dot(f, f) - square) / q, t1 = q / dd;
     fl_wf first = fl_wf_min(t0, t1), last = fl_wf_max(t0, t1);
     fl_wf t = fl_wf_select(first > 0.0f, first, last);
-    t = fl_wf_select(meets, t, fl_wf_set(-1.0f));
+    t = fl_wf_select(meets, t, none);
     return fl_wf_select(own, middle + middle, t);
 }
 
-FL_INLINE fl_wf hit_patch(const fl_patches *p, uint32_t k, const bundle *b, fl_wm own)
+/* best: nothing beyond it counts. */
+FL_INLINE fl_wf hit_patch(const fl_patches *p, uint32_t k, const bundle *b, fl_wm own, fl_wf best)
 {
     fl_wf n[3] = {fl_wf_set(p->nx[k]), fl_wf_set(p->ny[k]), fl_wf_set(p->nz[k])};
     fl_wf f[3] = {b->o[0] - p->cx[k], b->o[1] - p->cy[k], b->o[2] - p->cz[k]};
     fl_wf t = -dot(n, f) / dot(n, b->d);
+    fl_wm counts = (t > 0.0f) & (t <= best) & ~own;
+    if (!fl_wm_any(counts))
+        return fl_wf_set(-1.0f);
     for (int a = 0; a < 3; a++)
         f[a] = f[a] + t * b->d[a];
     fl_wf u[3] = {fl_wf_set(p->ax[k]), fl_wf_set(p->ay[k]), fl_wf_set(p->az[k])};
@@ -52,7 +59,7 @@ FL_INLINE fl_wf hit_patch(const fl_patches *p, uint32_t k, const bundle *b, fl_w
         inside = alpha * alpha + beta * beta <= 1.0f;
     else
         inside = (alpha >= 0.0f) & (alpha <= 1.0f) & (beta >= 0.0f) & (beta <= 1.0f);
-    return fl_wf_select(inside & ~own, t, fl_wf_set(-1.0f));
+    return fl_wf_select(inside & counts, t, fl_wf_set(-1.0f));
 }
 
 /* The bound in double below which a root rounds to a float below t_max: where any-hit must agree

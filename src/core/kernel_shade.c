@@ -4,59 +4,12 @@
 #include <math.h>
 
 #include "core/kernel_camera.h"
+#include "core/kernel_material.h"
+#include "core/kernel_shade_vec.h"
 
 /* Shadow rays end this much, relatively, before the point on the light: far above the rounding of
  * t, so that a surface on which the light lies does not hide it. */
 #define SHADOW_END (1.0f - 0x1p-20f)
-
-typedef struct wide3 {
-    fl_wf x, y, z;
-} wide3;
-
-FL_INLINE wide3 load3(fl_array3 a, uint32_t at)
-{
-    return (wide3){fl_wf_load(a.x + at), fl_wf_load(a.y + at), fl_wf_load(a.z + at)};
-}
-
-FL_INLINE void store3(fl_array3 a, uint32_t at, wide3 v)
-{
-    fl_wf_store(a.x + at, v.x);
-    fl_wf_store(a.y + at, v.y);
-    fl_wf_store(a.z + at, v.z);
-}
-
-FL_INLINE wide3 set3(const float v[3])
-{
-    return (wide3){fl_wf_set(v[0]), fl_wf_set(v[1]), fl_wf_set(v[2])};
-}
-
-FL_INLINE fl_wf dot3(wide3 a, wide3 b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/* a + s b */
-FL_INLINE wide3 mad3(wide3 a, wide3 b, fl_wf s)
-{
-    return (wide3){a.x + b.x * s, a.y + b.y * s, a.z + b.z * s};
-}
-
-FL_INLINE wide3 scale3(wide3 a, fl_wf s)
-{
-    return (wide3){a.x * s, a.y * s, a.z * s};
-}
-
-FL_INLINE wide3 load_point(const fl_stage *stage, uint32_t at)
-{
-    const fl_surface *s = &stage->surface;
-    return (wide3){fl_wf_load(s->px + at), fl_wf_load(s->py + at), fl_wf_load(s->pz + at)};
-}
-
-FL_INLINE wide3 load_geometric(const fl_stage *stage, uint32_t at)
-{
-    const fl_surface *s = &stage->surface;
-    return (wide3){fl_wf_load(s->ngx + at), fl_wf_load(s->ngy + at), fl_wf_load(s->ngz + at)};
-}
 
 /* Where a ray towards `direction` leaves the surface: outside its error bound, on the side it goes
  * to. */
@@ -237,4 +190,10 @@ static void bend(const fl_frame *frame, fl_stage *stage)
     }
 }
 
-const fl_shade_kernels FL_ISA_NAME(fl_shade_kernels) = {generate, orient, light, bend};
+const fl_shade_kernels FL_ISA_NAME(fl_shade_kernels) = {generate,
+                                                        FL_ISA_NAME(fl_shade_keep_hits),
+                                                        FL_ISA_NAME(fl_shade_material),
+                                                        FL_ISA_NAME(fl_shade_texture),
+                                                        orient,
+                                                        light,
+                                                        bend};

@@ -58,6 +58,16 @@ typedef struct fl_shade_kernels {
      */
     void (*generate)(const fl_frame *frame, const fl_unit *unit, uint32_t begin, uint32_t count,
                      fl_stage *out_stage);
+    /** Take the rays that hit nothing out of the stream; sets entry, and reads and writes up to
+     * FL_STREAM_SLACK beyond. Returns how many are left; rays.count stays. Afterwards t_max and
+     * source_* mean nothing. */
+    uint32_t (*keep_hits)(fl_stage *stage);
+    /** shader, diffuse, specular, shininess, index and radiance (the ambient light alone) from
+     * hits and surface. True: something may spawn rays. Adds to *texture_lookups. */
+    bool (*material)(const fl_frame *frame, fl_stage *stage, uint64_t *texture_lookups);
+    /** fl_texture_eval for `count` coordinates; arrays with FL_STREAM_SLACK beyond. */
+    void (*texture)(const fl_texture *texture, const float *u, const float *v, uint32_t count,
+                    fl_array3 out);
     /** view and normal from rays and surface. */
     void (*orient)(const fl_frame *frame, fl_stage *stage);
     /** Sample number j of a light, sample `sample` of the pixel: everything that arrives and is not

@@ -7,8 +7,6 @@
 #include "core/pipeline_work.h"
 #include "core/texture.h"
 
-enum { FETCH_AHEAD = 12 }; /* Rays between asking for a texel and using it. */
-
 const char *const fl_cost_names[FL_COST_COUNT] = {"generate", "nearest",    "resolve",
                                                   "material", "light",      "occlude",
                                                   "spawn",    "accumulate", "film"};
@@ -48,25 +46,6 @@ static void clear3(fl_array3 a, uint32_t count)
     memset(a.z, 0, count * sizeof(float));
 }
 
-static void copy_ray(fl_stage *stage, uint32_t to, uint32_t from)
-{
-    fl_rays *r = &stage->rays;
-    r->ox[to] = r->ox[from];
-    r->oy[to] = r->oy[from];
-    r->oz[to] = r->oz[from];
-    r->dx[to] = r->dx[from];
-    r->dy[to] = r->dy[from];
-    r->dz[to] = r->dz[from];
-    r->t_max[to] = r->t_max[from];
-    r->source_object[to] = r->source_object[from];
-    r->source_prim[to] = r->source_prim[from];
-    stage->hits.t[to] = stage->hits.t[from];
-    stage->hits.object[to] = stage->hits.object[from];
-    stage->hits.prim[to] = stage->hits.prim[from];
-    stage->pixel[to] = stage->pixel[from];
-    stage->path[to] = stage->path[from];
-}
-
 /* Rays that hit nothing see the background and leave the stream. */
 static void take_misses(fl_pipe *pipe)
 {
@@ -75,101 +54,22 @@ static void take_misses(fl_pipe *pipe)
     const fl_vec3 color = frame->params.background;
     const float background[3] = {(float)color.x, (float)color.y, (float)color.z};
     bool has_cube = frame->scene->cube[0] != NULL;
-    uint32_t kept = 0;
     for (uint32_t i = 0; i < stage->rays.count; i++) {
-        if (stage->hits.object[i] != FL_NONE) {
-            if (kept != i)
-                copy_ray(stage, kept, i);
-            stage->entry[kept++] = i;
-        } else if (has_cube) {
-            float d[3] = {stage->rays.dx[i], stage->rays.dy[i], stage->rays.dz[i]}, rgb[3];
+        if (stage->hits.object[i] != FL_NONE)
+            continue;
+        float d[3] = {stage->rays.dx[i], stage->rays.dy[i], stage->rays.dz[i]}, rgb[3];
+        if (has_cube)
             fl_cube_eval(frame->scene->cube, d, frame->params.exact.course_cube, rgb);
-            put3(pipe->work->glow, i, rgb);
-        } else {
-            put3(pipe->work->glow, i, background);
-        }
+        put3(pipe->work->glow, i, has_cube ? rgb : background);
     }
-    stage->rays.count = kept;
+    stage->rays.count = pipe->shade->keep_hits(stage);
     fl_rays_pad(&stage->rays);
-    fl_hits_pad(&stage->hits, kept);
+    fl_hits_pad(&stage->hits, stage->rays.count);
 }
 
 static bool is_black(const float c[3])
 {
     return c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f;
-}
-
-/* Index of refraction with which ray i goes on, or 0. */
-static float branch_index(const fl_shader *shader)
-{
-    if (is_black(shader->reflect) && is_black(shader->refract))
-        return 0.0f;
-    return shader->refraction_index > 0.0f ? shader->refraction_index : 1.0f;
-}
-
-static bool is_seen_from_behind(const fl_stage *stage, uint32_t i)
-{
-    const fl_surface *s = &stage->surface;
-    return s->ngx[i] * stage->rays.dx[i] + s->ngy[i] * stage->rays.dy[i] +
-               s->ngz[i] * stage->rays.dz[i] >
-           0.0f;
-}
-
-/* Texels are far apart in memory: ask for those of a later ray while this one is worked on. */
-static void fetch_texel(const fl_compiled *scene, const fl_stage *stage, uint32_t i)
-{
-    const fl_shader *shader = &scene->shaders[scene->object_shader[stage->hits.object[i]]];
-    if (shader->texture != FL_NONE)
-        fl_texture_fetch(&scene->textures[shader->texture], stage->surface.u[i],
-                         stage->surface.v[i]);
-}
-
-/* What the surfaces are made of, and the ambient light on them. True: some of them spawn rays. */
-static bool fetch_materials(fl_pipe *pipe)
-{
-    fl_stage *stage = &pipe->work->stage;
-    const fl_frame_plan *plan = &pipe->frame->plan;
-    const fl_compiled *scene = pipe->frame->scene;
-    const fl_vec3 ambient = pipe->frame->params.ambient;
-    const float light[3] = {(float)ambient.x, (float)ambient.y, (float)ambient.z};
-    bool has_branches = false;
-    for (uint32_t i = 0; i < stage->rays.count; i++) {
-        uint32_t number = scene->object_shader[stage->hits.object[i]];
-        const fl_shader *shader = &scene->shaders[number];
-        if (plan->has_textures && i + FETCH_AHEAD < stage->rays.count)
-            fetch_texel(scene, stage, i + FETCH_AHEAD);
-        float diffuse[3] = {shader->diffuse[0], shader->diffuse[1], shader->diffuse[2]}, texel[3],
-              glow[3];
-        if (plan->has_textures && shader->texture != FL_NONE) {
-            fl_texture_eval(&scene->textures[shader->texture], stage->surface.u[i],
-                            stage->surface.v[i], texel);
-            for (int c = 0; c < 3; c++)
-                diffuse[c] *= texel[c];
-            pipe->counts.texture_lookups++;
-        }
-        const float *reflectance = shader->ambient_is_diffuse ? diffuse : shader->ambient;
-        for (int c = 0; c < 3; c++)
-            glow[c] = reflectance[c] * light[c];
-        const float *specular = shader->specular;
-        if (pipe->frame->params.exact.black_back_faces && is_seen_from_behind(stage, i)) {
-            static const float black[3] = {0.0f, 0.0f, 0.0f};
-            memset(diffuse, 0, sizeof diffuse);
-            memset(glow, 0, sizeof glow);
-            specular = black;
-        }
-        put3(stage->diffuse, i, diffuse);
-        put3(stage->radiance, i, glow);
-        stage->shader[i] = number;
-        if (plan->has_specular) {
-            put3(stage->specular, i, specular);
-            stage->shininess[i] = shader->shininess;
-        }
-        if (plan->has_reflection || plan->has_refraction) {
-            stage->index[i] = branch_index(shader);
-            has_branches |= stage->index[i] != 0.0f;
-        }
-    }
-    return has_branches;
 }
 
 static void tell(const fl_pipe *pipe, fl_moment moment, uint32_t light, uint32_t j)
@@ -318,7 +218,8 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
         fl_pipe_lap(pipe, FL_COST_RESOLVE);
         if (fl_is_cancelled(&pipe->context))
             return false;
-        bool has_branches = fetch_materials(pipe);
+        bool has_branches =
+            pipe->shade->material(pipe->frame, stage, &pipe->counts.texture_lookups);
         pipe->shade->orient(pipe->frame, stage);
         fl_pipe_lap(pipe, FL_COST_MATERIAL);
         tell(pipe, FL_AT_SURFACES, 0, 0);

@@ -77,19 +77,6 @@ static double fraction(float coordinate, float scale, bool clamps)
     return clamps ? fl_clamp(x, 0.0, 1.0) : x - floor(x);
 }
 
-void fl_texture_fetch(const fl_texture *texture, float u, float v)
-{
-    const fl_image *image = texture->image;
-    double x = fraction(u, texture->scale[0], false) * (double)image->width - 0.5;
-    double y = (1.0 - fraction(v, texture->scale[1], texture->clamps_v)) * (double)image->height;
-    size_t column = x > 0.0 ? (size_t)x : 0, row = y > 0.5 ? (size_t)(y - 0.5) : 0;
-    size_t bytes = image->format == FL_PIXEL_FLOAT ? 3 * sizeof(float) : 3;
-    size_t row_bytes = bytes * image->width, below = row + 1 < image->height ? row_bytes : 0;
-    const char *first = (const char *)image->pixels + row * row_bytes + column * bytes;
-    __builtin_prefetch(first);
-    __builtin_prefetch(first + below);
-}
-
 void fl_texture_eval(const fl_texture *texture, float u, float v, float out_rgb[3])
 {
     const fl_image *image = texture->image;

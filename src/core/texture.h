@@ -9,9 +9,6 @@
 
 #include "core/compile.h"
 
-/** Begin to bring what fl_texture_eval will read at (u, v) into the cache. Changes nothing. */
-void fl_texture_fetch(const fl_texture *texture, float u, float v);
-
 /** Linear colour at (u, v), each first multiplied by texture->scale. v = 0 is the bottom row, texel
  * centres lie at (i + 1/2) / size, u repeats, v clamps or repeats (decision 11). */
 void fl_texture_eval(const fl_texture *texture, float u, float v, float out_rgb[3]);

@@ -6,6 +6,7 @@
 #include "pipeline_world.h"
 
 #include "core/pipeline_work.h"
+#include "core/texture.h"
 
 static const fl_shade_kernels *kernels_of(fl_isa isa)
 {
@@ -238,9 +239,62 @@ static void coplanar_neighbours_do_not_shade_each_other(void **state)
     }
 }
 
+/* Some texture coordinates of every kind: ordinary, at texel borders, far away, not numbers. */
+static float coordinate(uint32_t *seed, uint32_t i)
+{
+    static const float odd[] = {0.0f, -0.0f,  1.0f,     -1.0f,     0.5f,
+                                1e9f, -1e30f, INFINITY, -INFINITY, NAN};
+    if (i % 4 == 0)
+        return odd[i / 4 % FL_COUNT_OF(odd)];
+    if (i % 4 == 1)
+        return (float)((int)(i % 40) - 20) / 8.0f;
+    return random_in(seed, -3, 3);
+}
+
+/* Wide look-ups against the plain one, bit for bit, for every way to store and read a picture. */
+static void textures_are_read_alike(void **state)
+{
+    (void)state;
+    enum { COUNT = 397 };
+    static float u[COUNT + FL_STREAM_SLACK], v[COUNT + FL_STREAM_SLACK];
+    static float got[3][COUNT + FL_STREAM_SLACK];
+    uint32_t seed = 5;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        u[i] = coordinate(&seed, i);
+        v[i] = coordinate(&seed, i / 3);
+    }
+    for (uint32_t kind = 0; kind < 24; kind++) {
+        fl_image *image =
+            fl_image_create(kind % 2 ? 5 : 1, kind % 2 ? 4 : 1, (fl_pixel_format)(kind / 2 % 3));
+        for (size_t i = 0; i < fl_image_bytes(image); i++)
+            ((uint8_t *)image->pixels)[i] = (uint8_t)(7 + 31 * i);
+        for (uint32_t i = 0; image->format == FL_PIXEL_FLOAT && i < image->width; i++)
+            ((float *)image->pixels)[3 * i] = i == 1 ? INFINITY : 0.3f * (float)i;
+        fl_texture texture = {image,
+                              kind / 6 % 2 ? FL_FILTER_NEAREST : FL_FILTER_BILINEAR,
+                              {1.5f, -0.7f},
+                              kind / 12 % 2};
+        for (int isa = 0; isa < FL_ISA_COUNT; isa++) {
+            if (!fl_cpu_has((fl_isa)isa))
+                continue;
+            kernels_of((fl_isa)isa)
+                ->texture(&texture, u, v, COUNT, (fl_array3){got[0], got[1], got[2]});
+            for (uint32_t i = 0; i < COUNT; i++) {
+                float want[3];
+                fl_texture_eval(&texture, u[i], v[i], want);
+                for (int c = 0; c < 3; c++)
+                    assert_true(memcmp(&want[c], &got[c][i], sizeof want[c]) == 0 ||
+                                (isnan(want[c]) && isnan(got[c][i])));
+            }
+        }
+        fl_image_release(image);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(textures_are_read_alike),
         cmocka_unit_test(every_instruction_set_gives_the_scalar_bits),
         cmocka_unit_test(specular_needs_both_normals),
         cmocka_unit_test(coplanar_neighbours_do_not_shade_each_other),
