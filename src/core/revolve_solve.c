@@ -166,6 +166,17 @@ FL_INLINE uint32_t cull_group(const cull *f, const fl_revolve_group *group, floa
     return plus | minus << 8;
 }
 
+/* Whether all of a piece's w between two knots lie within the ray's limits: s and y are monotone
+ * there. */
+FL_INLINE bool is_within(const cut *r, const side *a, const knot *lo, const knot *hi)
+{
+    double p0 = r->s_l * (a->sigma * lo->s), p1 = r->s_l * (a->sigma * hi->s);
+    double h0 = r->d_y * lo->y, h1 = r->d_y * hi->y;
+    double pad = 4.0 * FL_REVOLVE_PAD + 1e-15 * fabs(r->w0);
+    return fl_min(p0, p1) + fl_min(h0, h1) > r->w0 + r->u_min * r->per_u + pad &&
+           fl_max(p0, p1) + fl_max(h0, h1) < r->w - pad;
+}
+
 /* One piece on one side. Most pieces are decided here by the signs of e at the ends: e is monotone,
  * or the boxes of g s and q are apart, or the cut curve is convex. */
 FL_INLINE void try_degree(cut *r, const fl_revolve *v, uint32_t code, uint32_t n)
@@ -189,6 +200,11 @@ FL_INLINE void try_degree(cut *r, const fl_revolve *v, uint32_t code, uint32_t n
     if (same &&
         (monotone || fl_max(a0, a1) < fl_min(lo.q, hi.q) || fl_min(a0, a1) > fl_max(lo.q, hi.q)))
         return;
+    if (!same && r->any &&
+        is_within(r, &a, &lo, &hi)) { /* There is a root; where does not matter. */
+        r->found = true;
+        return;
+    }
     if (!same && (monotone || a.is_convex)) {
         double t = cut_root(r, &a, &lo, &hi, is_cut);
         if (is_cut && fl_revolve_poly(a.px, n, t) <
@@ -218,12 +234,25 @@ static void try_higher(cut *r, const fl_revolve *v, uint32_t code)
 FL_INLINE void try_all(cut *r, const fl_revolve *v, const candidate *list, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
-        if ((double)list[i].w - 4.0 * FL_REVOLVE_PAD > r->w || (r->any && r->found))
+        if ((double)list[i].w - 4.0 * FL_REVOLVE_PAD > r->w)
             return;
         if (v->degree == 3)
             try_cubic(r, v, list[i].code);
         else
             try_higher(r, v, list[i].code);
+    }
+}
+
+/* Try the pieces of a group in any order until one is hit. */
+FL_INLINE void try_any(cut *r, const fl_revolve *v, uint32_t bits, uint32_t first)
+{
+    for (; bits && !r->found; bits &= bits - 1) {
+        uint32_t bit = (uint32_t)__builtin_ctz(bits);
+        uint32_t code = 2 * (first + (bit & 7)) + (bit >> 3);
+        if (v->degree == 3)
+            try_cubic(r, v, code);
+        else
+            try_higher(r, v, code);
     }
 }
 
@@ -267,10 +296,14 @@ FL_INLINE void solve(cut *r, const fl_revolve *v)
         while (top > 0) {
             uint32_t level = pending[--top][0], index = pending[top][1];
             uint32_t bits = cull_group(&f, &v->groups[level][index], limit_of(r), w);
+            if (level == 0 && r->any) {
+                try_any(r, v, bits, index * FL_REVOLVE_GROUP);
+                if (r->found)
+                    return;
+                continue;
+            }
             if (level == 0) {
                 count = collect(r, v, bits, index * FL_REVOLVE_GROUP, w, list, count);
-                if (r->any && r->found)
-                    return;
                 continue;
             }
             for (bits = (bits | bits >> 8) & 0xff; bits; bits &= bits - 1) {
