@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { BLOCK_SAMPLES = 16 };
+enum { BLOCK_SAMPLES = 16, FETCH_AHEAD = 16 };
 
 typedef double rgb_sum[3];
 
@@ -103,6 +103,14 @@ static void end_block(fl_film *film, size_t at, bool is_first)
         film->full[at][c] = (is_first ? 0.0 : film->full[at][c]) + film->block[at][c];
 }
 
+/* In Bayer order every pixel lies on lines of its own: ask for those of a later one. */
+static void fetch_pixel(const fl_film *film, uint32_t x, uint32_t y)
+{
+    size_t at = (size_t)y * film->width + x;
+    __builtin_prefetch(film->block + at, 1);
+    __builtin_prefetch(film->samples + at, 1);
+}
+
 void fl_film_add(fl_film *film, const fl_unit *unit, const fl_unit_result *result, uint32_t x0,
                  uint32_t y0)
 {
@@ -111,6 +119,8 @@ void fl_film_add(fl_film *film, const fl_unit *unit, const fl_unit_result *resul
     for (uint32_t i = 0; i < unit->count; i++) {
         uint32_t x = unit->x[i] - x0, y = unit->y[i] - y0;
         FL_ASSERT(x < film->width && y < film->height);
+        if (i + FETCH_AHEAD < unit->count)
+            fetch_pixel(film, unit->x[i + FETCH_AHEAD] - x0, unit->y[i + FETCH_AHEAD] - y0);
         if (film->row_epoch[y] != film->epoch)
             wipe_row(film, y);
         size_t at = (size_t)y * film->width + x;

@@ -6,19 +6,11 @@
 #include "core/kernel_camera.h"
 #include "core/kernel_material.h"
 #include "core/kernel_shade_vec.h"
+#include "core/kernel_spawn.h"
 
 /* Shadow rays end this much, relatively, before the point on the light: far above the rounding of
  * t, so that a surface on which the light lies does not hide it. */
 #define SHADOW_END (1.0f - 0x1p-20f)
-
-/* Where a ray towards `direction` leaves the surface: outside its error bound, on the side it goes
- * to. */
-FL_INLINE wide3 leave(const fl_stage *stage, uint32_t at, wide3 point, wide3 geometric,
-                      wide3 direction)
-{
-    fl_wf side = dot3(geometric, direction);
-    return mad3(point, geometric, fl_wf_copysign(fl_wf_load(stage->surface.offset + at), side));
-}
 
 static void generate(const fl_frame *frame, const fl_unit *unit, uint32_t begin, uint32_t count,
                      fl_stage *out_stage)
@@ -160,40 +152,10 @@ static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sa
     }
 }
 
-static void bend(const fl_frame *frame, fl_stage *stage)
-{
-    fl_wf one = fl_wf_set(1.0f), zero = fl_wf_set(0.0f);
-    for (uint32_t i = 0; i < stage->rays.count; i += FL_W) {
-        fl_wf index = fl_wf_load(stage->index + i);
-        if (!fl_wm_any((index != 0.0f) & fl_wm_first(stage->rays.count - i)))
-            continue;
-        wide3 point = load_point(stage, i), geometric = load_geometric(stage, i);
-        wide3 normal = load3(stage->normal, i), view = load3(stage->view, i);
-        fl_wf n_v = fl_wf_max(fl_wf_min(dot3(normal, view), one), -one);
-        wide3 mirrored = mad3(scale3(normal, 2.0f * n_v), view, -one);
-        store3(stage->reflect, i, mirrored);
-        store3(stage->reflect_origin, i, leave(stage, i, point, geometric, mirrored));
-        fl_wu_store(stage->is_total + i, fl_wu_set(0));
-        if (!frame->plan.has_refraction)
-            continue;
-        /* The part along the surface scales by the ratio of the indices; what is left of 1 goes
-         * across. */
-        fl_wm enters = dot3(geometric, view) >= 0.0f;
-        fl_wf ratio = fl_wf_select(enters, 1.0f / index, index);
-        wide3 along = scale3(mad3(scale3(normal, n_v), view, -one), ratio);
-        fl_wf across = 1.0f - dot3(along, along);
-        fl_wm passes = across > 0.0f;
-        wide3 bent = mad3(along, normal, -fl_wf_sqrt(fl_wf_max(across, zero)));
-        store3(stage->refract, i, bent);
-        store3(stage->refract_origin, i, leave(stage, i, point, geometric, bent));
-        fl_wu_store(stage->is_total + i, (fl_wu)~passes);
-    }
-}
-
 const fl_shade_kernels FL_ISA_NAME(fl_shade_kernels) = {generate,
                                                         FL_ISA_NAME(fl_shade_keep_hits),
                                                         FL_ISA_NAME(fl_shade_material),
                                                         FL_ISA_NAME(fl_shade_texture),
                                                         orient,
                                                         light,
-                                                        bend};
+                                                        FL_ISA_NAME(fl_shade_spawn)};

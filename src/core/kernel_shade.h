@@ -40,9 +40,6 @@ typedef struct fl_stage {
     float *shininess;
     float *index;       /**< Index of refraction; 0: this surface spawns nothing. */
     fl_array3 radiance; /**< So far. */
-    fl_array3 reflect_origin, reflect, refract_origin,
-        refract;        /**< Spawned rays; directions of unit length. */
-    uint32_t *is_total; /**< Nonzero: total internal reflection. */
 } fl_stage;
 
 /** Light that arrives unless its ray is blocked. */
@@ -51,6 +48,27 @@ typedef struct fl_shadow {
     uint32_t *at;      /**< Index into the stage. */
     fl_array3 arrives; /**< Contribution to the stage's radiance. */
 } fl_shadow;
+
+/* Fields of a branch that are numbers: origin, direction, throughput; and words. */
+enum { FL_BRANCH_NUMBERS = 9 };
+enum {
+    FL_BRANCH_OBJECT, /**< Which surface it leaves, */
+    FL_BRANCH_PRIM,   /**< and where on it. */
+    FL_BRANCH_PATH,
+    FL_BRANCH_SLOT, /**< Which sample of the unit it belongs to. */
+    FL_BRANCH_PIXEL,
+    FL_BRANCH_REFRACTED, /**< 1, or 0: reflected. */
+    FL_BRANCH_WORDS
+};
+
+/** Reflected and refracted rays that wait for their level, those of a slot next to each other and
+ * slots ascending; {0} to begin. */
+typedef struct fl_branches {
+    float *number[FL_BRANCH_NUMBERS]; /**< Whole vectors may be written behind `count`. */
+    uint32_t *word[FL_BRANCH_WORDS];
+    uint32_t count, capacity;
+    void *memory; /**< Owned, from aligned_alloc: all arrays. */
+} fl_branches;
 
 /** One instruction set's entry points. Thread: any, with its own stages. */
 typedef struct fl_shade_kernels {
@@ -75,8 +93,10 @@ typedef struct fl_shade_kernels {
      * its count always is. */
     void (*light)(const fl_frame *frame, const fl_frame_light *light, uint32_t sample, uint32_t j,
                   const fl_stage *stage, fl_shadow *out_shadow);
-    /** reflect, refract, is_total and origins where index is not 0. */
-    void (*bend)(const fl_frame *frame, fl_stage *stage);
+    /** Append what the surfaces reflect and let through, where index is not 0 and it weighs enough:
+     * at most two rays a hit, for which `out` has room. throughput and slot are by stage->entry. */
+    void (*spawn)(const fl_frame *frame, const fl_stage *stage, fl_array3 throughput,
+                  const uint32_t *slot, fl_branches *out);
 } fl_shade_kernels;
 
 extern const fl_shade_kernels fl_shade_kernels_scalar;

@@ -67,4 +67,13 @@ FL_INLINE wide3 load_geometric(const fl_stage *stage, uint32_t at)
     return (wide3){fl_wf_load(s->ngx + at), fl_wf_load(s->ngy + at), fl_wf_load(s->ngz + at)};
 }
 
+/* Where a ray towards `direction` leaves the surface: outside its error bound, on the side it goes
+ * to. */
+FL_INLINE wide3 leave(const fl_stage *stage, uint32_t at, wide3 point, wide3 geometric,
+                      wide3 direction)
+{
+    fl_wf side = dot3(geometric, direction);
+    return mad3(point, geometric, fl_wf_copysign(fl_wf_load(stage->surface.offset + at), side));
+}
+
 #endif

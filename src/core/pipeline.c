@@ -67,11 +67,6 @@ static void take_misses(fl_pipe *pipe)
     fl_hits_pad(&stage->hits, stage->rays.count);
 }
 
-static bool is_black(const float c[3])
-{
-    return c[0] == 0.0f && c[1] == 0.0f && c[2] == 0.0f;
-}
-
 static void tell(const fl_pipe *pipe, fl_moment moment, uint32_t light, uint32_t j)
 {
     const fl_witness *witness = pipe->work->witness;
@@ -133,49 +128,6 @@ static bool add_lights(fl_pipe *pipe)
     return true;
 }
 
-/* A branch of ray i of the stage, unless it weighs too little. */
-static void spawn(fl_pipe *pipe, uint32_t i, const float weight[3], bool is_refracted)
-{
-    fl_workspace *work = pipe->work;
-    const fl_stage *stage = &work->stage;
-    const fl_params *params = &pipe->frame->params;
-    uint32_t entry = stage->entry[i];
-    fl_array3 t = work->throughput;
-    const float c[3] = {t.x[entry] * weight[0], t.y[entry] * weight[1], t.z[entry] * weight[2]};
-    float rg = c[0] > c[1] ? c[0] : c[1], largest = rg > c[2] ? rg : c[2];
-    float threshold = (float)params->weight_threshold;
-    if (is_black(c) || (threshold > 0.0f && largest < threshold))
-        return;
-    fl_array3 o = is_refracted ? stage->refract_origin : stage->reflect_origin;
-    fl_array3 d = is_refracted ? stage->refract : stage->reflect;
-    work->next.items[work->next.count++] = (fl_branch){
-        .origin = {o.x[i], o.y[i], o.z[i]},
-        .direction = {d.x[i], d.y[i], d.z[i]},
-        .throughput = {c[0], c[1], c[2]},
-        .source_object = stage->hits.object[i],
-        .source_prim = stage->hits.prim[i],
-        .path = fl_path_child(params->seed, stage->path[i], is_refracted ? 1 : 0),
-        .slot = work->slot[entry],
-        .is_refracted = is_refracted,
-    };
-}
-
-static void spawn_all(fl_pipe *pipe)
-{
-    const fl_stage *stage = &pipe->work->stage;
-    pipe->shade->bend(pipe->frame, &pipe->work->stage);
-    for (uint32_t i = 0; i < stage->rays.count; i++) {
-        if (stage->index[i] == 0.0f)
-            continue;
-        const fl_shader *shader = &pipe->frame->scene->shaders[stage->shader[i]];
-        const float *k = shader->reflect, *m = shader->refract;
-        float both[3] = {k[0] + m[0], k[1] + m[1], k[2] + m[2]};
-        spawn(pipe, i, stage->is_total[i] ? both : k, false);
-        if (!stage->is_total[i])
-            spawn(pipe, i, m, true);
-    }
-}
-
 /* Radiance of the whole stream, weighted, to the unit's samples, in order of the stream. */
 static void accumulate(fl_pipe *pipe, uint32_t count)
 {
@@ -226,7 +178,7 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
         if (fl_is_cancelled(&pipe->context) || !add_lights(pipe))
             return false;
         if (has_branches && may_spawn)
-            spawn_all(pipe);
+            pipe->shade->spawn(pipe->frame, stage, work->throughput, work->slot, &work->next);
         fl_pipe_lap(pipe, FL_COST_SPAWN);
     }
     accumulate(pipe, count);
@@ -237,24 +189,25 @@ static bool run_stream(fl_pipe *pipe, bool may_spawn)
 static void load_branches(fl_pipe *pipe, uint32_t begin, uint32_t count)
 {
     fl_workspace *work = pipe->work;
+    const fl_branches *from = &work->current;
     fl_stage *stage = &work->stage;
     fl_rays *rays = &stage->rays;
+    float *const numbers[FL_BRANCH_NUMBERS] = {
+        rays->ox, rays->oy,           rays->oz,           rays->dx,          rays->dy,
+        rays->dz, work->throughput.x, work->throughput.y, work->throughput.z};
+    uint32_t *const words[FL_BRANCH_REFRACTED] = {rays->source_object, rays->source_prim,
+                                                  stage->path, work->slot, stage->pixel};
+    for (int k = 0; k < FL_BRANCH_NUMBERS; k++)
+        memcpy(numbers[k], from->number[k] + begin, count * sizeof(float));
+    for (int k = 0; k < FL_BRANCH_REFRACTED; k++)
+        memcpy(words[k], from->word[k] + begin, count * sizeof(uint32_t));
+    uint32_t refracted = 0;
     for (uint32_t i = 0; i < count; i++) {
-        const fl_branch *b = &work->current.items[begin + i];
-        put3((fl_array3){rays->ox, rays->oy, rays->oz}, i, b->origin);
-        put3((fl_array3){rays->dx, rays->dy, rays->dz}, i, b->direction);
-        put3(work->throughput, i, b->throughput);
         rays->t_max[i] = INFINITY;
-        rays->source_object[i] = b->source_object;
-        rays->source_prim[i] = b->source_prim;
-        stage->path[i] = b->path;
-        stage->pixel[i] = fl_pixel_id(pipe->unit->x[b->slot], pipe->unit->y[b->slot]);
-        work->slot[i] = b->slot;
-        if (b->is_refracted)
-            pipe->counts.refract_rays++;
-        else
-            pipe->counts.reflect_rays++;
+        refracted += from->word[FL_BRANCH_REFRACTED][begin + i];
     }
+    pipe->counts.refract_rays += refracted;
+    pipe->counts.reflect_rays += count - refracted;
     rays->count = count;
     stage->is_camera = false;
 }

@@ -85,11 +85,6 @@ static fl_stage make_stage(maker *m)
     s.shininess = make_floats(m);
     s.index = make_floats(m);
     s.radiance = make3(m);
-    s.reflect_origin = make3(m);
-    s.reflect = make3(m);
-    s.refract_origin = make3(m);
-    s.refract = make3(m);
-    s.is_total = make_words(m);
     return s;
 }
 
@@ -144,8 +139,8 @@ void fl_workspace_destroy(fl_workspace *workspace)
 {
     if (!workspace)
         return;
-    free(workspace->current.items);
-    free(workspace->next.items);
+    fl_branches_deinit(&workspace->current);
+    fl_branches_deinit(&workspace->next);
     fl_arena_deinit(&workspace->arena);
     free(workspace);
 }
@@ -162,60 +157,95 @@ fl_cost_ticks *fl_workspace_ticks(fl_workspace *workspace)
 
 bool fl_branches_reserve(fl_branches *branches, uint32_t more)
 {
+    enum { FIELDS = FL_BRANCH_NUMBERS + FL_BRANCH_WORDS, ROUND = 16 };
     if (more <= branches->capacity - branches->count)
         return true;
-    uint32_t capacity = fl_max_u32(branches->count + more, 2 * branches->capacity);
-    fl_branch *items = realloc(branches->items, capacity * sizeof *items);
-    if (!items)
+    size_t capacity = fl_max_u32(branches->count + more, 2 * branches->capacity);
+    size_t stride = (capacity + FL_STREAM_SLACK + ROUND - 1) / ROUND * ROUND * sizeof(float);
+    char *memory = aligned_alloc(64, FIELDS * stride);
+    if (!memory)
         return false;
-    branches->items = items;
-    branches->capacity = capacity;
+    fl_branches grown = {.count = branches->count, .memory = memory};
+    grown.capacity = (uint32_t)capacity;
+    size_t bytes = branches->count * sizeof(float);
+    for (int k = 0; k < FL_BRANCH_NUMBERS; k++, memory += stride) {
+        grown.number[k] = (float *)(void *)memory;
+        if (bytes)
+            memcpy(memory, branches->number[k], bytes);
+    }
+    for (int k = 0; k < FL_BRANCH_WORDS; k++, memory += stride) {
+        grown.word[k] = (uint32_t *)(void *)memory;
+        if (bytes)
+            memcpy(memory, branches->word[k], bytes);
+    }
+    fl_branches_deinit(branches);
+    *branches = grown;
     return true;
 }
 
-static float weight(const fl_branch *branch)
+void fl_branches_deinit(fl_branches *branches)
 {
-    const float *t = branch->throughput;
-    float rg = t[0] > t[1] ? t[0] : t[1];
-    return rg > t[2] ? rg : t[2];
+    free(branches->memory);
+    *branches = (fl_branches){0};
 }
 
-/* Sort by path; the few of one slot are nearly always one to four. Stable. */
-static void sort_run(fl_branch *run, uint32_t count)
+static float weight(const fl_branches *b, uint32_t i)
 {
-    for (uint32_t i = 1; i < count; i++) {
-        fl_branch moved = run[i];
+    float red = b->number[6][i], green = b->number[7][i], blue = b->number[8][i];
+    float rg = red > green ? red : green;
+    return rg > blue ? rg : blue;
+}
+
+static void copy_branch(fl_branches *b, uint32_t to, uint32_t from)
+{
+    for (int k = 0; k < FL_BRANCH_NUMBERS; k++)
+        b->number[k][to] = b->number[k][from];
+    for (int k = 0; k < FL_BRANCH_WORDS; k++)
+        b->word[k][to] = b->word[k][from];
+}
+
+/* Sort [begin, end) by path; the few of one slot are nearly always one or two. Stable. The place
+ * behind the last branch holds the one that moves. */
+static void sort_run(fl_branches *b, uint32_t begin, uint32_t end)
+{
+    const uint32_t *path = b->word[FL_BRANCH_PATH];
+    for (uint32_t i = begin + 1; i < end; i++) {
+        if (path[i - 1] <= path[i])
+            continue;
         uint32_t j = i;
-        for (; j > 0 && run[j - 1].path > moved.path; j--)
-            run[j] = run[j - 1];
-        run[j] = moved;
+        copy_branch(b, b->count, i);
+        for (; j > begin && path[j - 1] > path[b->count]; j--)
+            copy_branch(b, j, j - 1);
+        copy_branch(b, j, b->count);
     }
 }
 
 /* Drop the lightest, of equals the lowest path, of a sorted run. */
-static void drop_one(fl_branch *run, uint32_t count)
+static void drop_one(fl_branches *b, uint32_t begin, uint32_t end)
 {
-    uint32_t lightest = 0;
-    for (uint32_t i = 1; i < count; i++)
-        if (weight(&run[i]) < weight(&run[lightest]))
+    uint32_t lightest = begin;
+    for (uint32_t i = begin + 1; i < end; i++)
+        if (weight(b, i) < weight(b, lightest))
             lightest = i;
-    memmove(run + lightest, run + lightest + 1, (count - lightest - 1) * sizeof *run);
+    for (uint32_t i = lightest; i + 1 < end; i++)
+        copy_branch(b, i, i + 1);
 }
 
 uint32_t fl_branches_settle(fl_branches *branches)
 {
+    const uint32_t *slot = branches->word[FL_BRANCH_SLOT];
     uint32_t kept = 0, count = branches->count;
     for (uint32_t begin = 0, end; begin < count; begin = end) {
-        fl_branch *run = branches->items + begin;
-        for (end = begin + 1; end < count && run[end - begin].slot == run->slot;)
+        end = begin + 1;
+        while (end < count && slot[end] == slot[begin])
             end++;
-        uint32_t run_count = end - begin;
-        sort_run(run, run_count);
-        for (; run_count > FL_PENDING_MAX; run_count--)
-            drop_one(run, run_count);
-        if (kept < begin)
-            memmove(branches->items + kept, run, run_count * sizeof *run);
-        kept += run_count;
+        uint32_t last = end;
+        sort_run(branches, begin, end);
+        for (; last - begin > FL_PENDING_MAX; last--)
+            drop_one(branches, begin, last);
+        for (uint32_t i = begin; i < last; i++, kept++)
+            if (kept != i)
+                copy_branch(branches, kept, i);
     }
     branches->count = kept;
     return count - kept;

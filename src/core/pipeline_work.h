@@ -11,23 +11,9 @@
 #include "core/pipeline.h"
 #include "core/ticks.h"
 
-/** A reflected or refracted ray that waits for its level. */
-typedef struct fl_branch {
-    float origin[3], direction[3], throughput[3];
-    uint32_t source_object, source_prim;
-    uint32_t path;
-    uint32_t slot; /**< Which sample of the unit it belongs to. */
-    bool is_refracted;
-} fl_branch;
-
-/** Branches in order of slot; {0} to begin. */
-typedef struct fl_branches {
-    fl_branch *items; /**< Owned, from malloc. */
-    uint32_t count, capacity;
-} fl_branches;
-
 /** Room for `more` beyond count; false: out of memory, the old ones are kept. Amortised O(more). */
 bool fl_branches_reserve(fl_branches *branches, uint32_t more);
+void fl_branches_deinit(fl_branches *branches);
 
 /** Bring each slot's branches into order of path and keep the FL_PENDING_MAX heaviest of them:
  * largest throughput first, of equals the higher path. Returns how many were dropped. O(n) for few

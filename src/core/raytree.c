@@ -61,7 +61,7 @@ static void see_hits(fl_raytree *tree, const fl_pipe *pipe)
         return;
     uint32_t first = tree->node_count;
     for (uint32_t i = 0; i < r->count; i++) {
-        bool is_refracted = level > 0 && work->current.items[i].is_refracted;
+        bool is_refracted = level > 0 && work->current.word[FL_BRANCH_REFRACTED][i];
         fl_raytree_node *node = &tree->nodes[first + i];
         *node = (fl_raytree_node){
             .kind = level == 0     ? FL_RAY_CAMERA

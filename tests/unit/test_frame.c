@@ -239,6 +239,18 @@ static void lights_are_prepared(void **state)
     fl_frame_release(f);
 }
 
+typedef struct branch {
+    uint32_t slot, path;
+    float weight;
+} branch;
+
+static branch branch_of(const fl_branches *b, uint32_t i)
+{
+    float rg = fmaxf(b->number[6][i], b->number[7][i]);
+    return (branch){b->word[FL_BRANCH_SLOT][i], b->word[FL_BRANCH_PATH][i],
+                    fmaxf(rg, b->number[8][i])};
+}
+
 /* Against the definition: the heaviest of each slot, of equals the higher path, in order of path.
  */
 static void branches_settle(void **state)
@@ -252,38 +264,51 @@ static void branches_settle(void **state)
         assert_true(fl_branches_reserve(&b, n));
         for (uint32_t i = 0; i < n; i++) {
             seed = fl_lowbias32(seed + 0x9E3779B9u);
-            fl_branch *item = &b.items[b.count++];
-            *item = (fl_branch){.slot = slot, .path = seed >> 8};
-            item->throughput[seed % 3] = (float)(seed >> 4 & 7u) / 8.0f;
+            for (int k = 0; k < FL_BRANCH_NUMBERS; k++)
+                b.number[k][b.count] = k < 6 ? (float)(k * 100000) + (float)b.count : 0.0f;
+            b.number[6 + seed % 3][b.count] = (float)(seed >> 4 & 7u) / 8.0f;
+            for (int k = 0; k < FL_BRANCH_WORDS; k++)
+                b.word[k][b.count] = (uint32_t)k * 100000 + b.count;
+            b.word[FL_BRANCH_SLOT][b.count] = slot;
+            b.word[FL_BRANCH_PATH][b.count++] = seed >> 8;
         }
         dropped_want += n > FL_PENDING_MAX ? n - FL_PENDING_MAX : 0;
     }
     uint32_t count = b.count;
-    fl_branch *before = malloc(count * sizeof *before);
-    assert_non_null(before);
-    memcpy(before, b.items, count * sizeof *before);
+    branch *before = malloc(count * sizeof *before), *after = malloc(count * sizeof *after);
+    assert_true(before && after);
+    for (uint32_t i = 0; i < count; i++)
+        before[i] = branch_of(&b, i);
     assert_int_equal(fl_branches_settle(&b), dropped_want);
     assert_int_equal(b.count, count - dropped_want);
+    for (uint32_t i = 0; i < b.count; i++) {
+        after[i] = branch_of(&b, i);
+        /* All that belongs to a branch went along with it. */
+        uint32_t number = b.word[FL_BRANCH_OBJECT][i];
+        assert_int_equal(b.word[FL_BRANCH_REFRACTED][i], FL_BRANCH_REFRACTED * 100000 + number);
+        for (uint32_t k = 0; k < 6; k++)
+            assert_true(b.number[k][i] == (float)(k * 100000) + (float)number);
+        assert_int_equal(before[number].path, after[i].path);
+    }
     for (uint32_t i = 1; i < b.count; i++)
-        assert_true(
-            b.items[i - 1].slot < b.items[i].slot ||
-            (b.items[i - 1].slot == b.items[i].slot && b.items[i - 1].path <= b.items[i].path));
+        assert_true(after[i - 1].slot < after[i].slot ||
+                    (after[i - 1].slot == after[i].slot && after[i - 1].path <= after[i].path));
     for (uint32_t i = 0, at = 0; i < count; i++) {
-        const fl_branch *a = &before[i];
+        const branch *a = &before[i];
         uint32_t heavier = 0;
         bool is_kept = false;
-        float wa = fmaxf(a->throughput[0], fmaxf(a->throughput[1], a->throughput[2]));
         for (uint32_t j = 0; j < count; j++) {
-            const fl_branch *c = &before[j];
-            float wc = fmaxf(c->throughput[0], fmaxf(c->throughput[1], c->throughput[2]));
-            heavier += c->slot == a->slot && (wc > wa || (wc == wa && c->path > a->path));
+            const branch *c = &before[j];
+            heavier += c->slot == a->slot &&
+                       (c->weight > a->weight || (c->weight == a->weight && c->path > a->path));
         }
         for (at = 0; at < b.count && !is_kept; at++)
-            is_kept = b.items[at].slot == a->slot && b.items[at].path == a->path;
+            is_kept = after[at].slot == a->slot && after[at].path == a->path;
         assert_int_equal(is_kept, heavier < FL_PENDING_MAX);
     }
     free(before);
-    free(b.items);
+    free(after);
+    fl_branches_deinit(&b);
 }
 
 int main(void)
