@@ -147,7 +147,8 @@ int cli_command_study(const cli_options *options)
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};
     study s = {0};
-    if (cli_scene_open(options, options->paths[0], &scene)) {
+    if (cli_scene_open(options, options->paths[0], &scene) &&
+        study_folder_open(options->out_dir, &diags)) {
         if (!cli_has(options, CLI_OPT_SIZE))
             shrink(&scene.params);
         run(options, &scene, knobs, &s);

@@ -8,6 +8,7 @@
 enum {
     BRUTE_FORCE_TRIANGLES = 1000, /* `none` is measured up to here (decision 26). */
     EXACT_SAMPLES = 16,           /* Knobs that change the price but no picture need no more. */
+    SLOW_SAMPLES = 16,            /* Ten times dearer, and known by its floor. */
     BRUTE_FORCE_SAMPLES = 4
 };
 
@@ -174,7 +175,7 @@ static void solver_text(fl_revolve_solver solver, char out[24])
         snprintf(out, 24, "newton-%u", solver);
 }
 
-static void add_solvers(study_plan *plan)
+static void add_solvers(study_plan *plan, uint32_t samples_max)
 {
     static const fl_revolve_solver values[] = {FL_REVOLVE_ROBUST, 2, 4, FL_REVOLVE_NEWTON, 16};
     for (uint32_t i = 0; i < FL_COUNT_OF(values); i++) {
@@ -185,6 +186,8 @@ static void add_solvers(study_plan *plan)
         study_config *c = add(plan, STUDY_SOLVER, text);
         c->params.solver = values[i];
         c->is_biased = true; /* Newton loses hits. */
+        if (values[i] != FL_REVOLVE_ROBUST)
+            c->samples_max = fl_min_u32(samples_max, SLOW_SAMPLES);
     }
 }
 
@@ -210,7 +213,7 @@ bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_m
     if ((knobs >> STUDY_SCALE & 1u) && scene->params.crop_w == 0)
         add_scales(out_plan);
     if ((knobs >> STUDY_SOLVER & 1u) && (needs & FL_NEED_REVOLUTIONS))
-        add_solvers(out_plan);
+        add_solvers(out_plan, samples_max);
     bool has_mesh = needs & FL_NEED_TRIANGLES;
     return !(knobs >> STUDY_ACCEL & 1u) || !has_mesh || add_accels(out_plan, scene, threads);
 }

@@ -261,11 +261,19 @@ static bool write_thumbnails(const study_report *report, fl_diags *diags)
     return ok;
 }
 
+bool study_folder_open(const char *dir, fl_diags *diags)
+{
+    struct stat status;
+    if (mkdir(dir, 0777) != 0 && errno != EEXIST)
+        return fl_environment_error(diags, "cannot make folder '%s': %s", dir, strerror(errno));
+    if (stat(dir, &status) != 0 || !S_ISDIR(status.st_mode))
+        return fl_environment_error(diags, "'%s' is no folder", dir);
+    return access(dir, W_OK) == 0 ||
+           fl_environment_error(diags, "cannot write into folder '%s': %s", dir, strerror(errno));
+}
+
 bool study_write(study_report *report, fl_diags *diags)
 {
-    if (mkdir(report->dir, 0777) != 0 && errno != EEXIST)
-        return fl_environment_error(diags, "cannot make folder '%s': %s", report->dir,
-                                    strerror(errno));
     json_t *json = study_json(report);
     bool ok = study_save_text(report->dir, "study.csv", fill_csv, report, diags);
     ok = (json ? study_save_text(report->dir, "study.json", fill_json, json, diags)

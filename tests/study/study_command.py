@@ -103,11 +103,20 @@ def out_of_budget(folder):
     expect(figures(out)["out_of_budget"], "a budget ends a study")
 
 
+def nowhere(folder):
+    """What cannot be written is said before it is measured: this study would take hours."""
+    out = os.path.join(folder, "no", "where")
+    done = subprocess.run(command("lens.txt", out, "--samples", "65536", "--repeats", "64"), stderr=subprocess.PIPE,
+                          text=True, timeout=60)
+    expect(done.returncode == 4 and "no/where" in done.stderr, "a missing folder is said at once")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         repeats(folder)
         interrupted(folder)
         out_of_budget(folder)
+        nowhere(folder)
     sys.exit(1 if failures else 0)
 
 
