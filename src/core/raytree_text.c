@@ -192,9 +192,12 @@ size_t fl_raytree_text(const fl_frame *frame, const fl_raytree *tree, bool is_sh
         put(&w, ", not a number: left out");
     if (tree->counts.dropped_branches > 0)
         put(&w, ", %llu branches dropped", (unsigned long long)tree->counts.dropped_branches);
+    if (tree->node_count == 0) {
+        put(&w, ", traced without streams: its rays are not written down\n");
+        return w.length;
+    }
     put(&w, is_short ? ", %u rays\n" : ", the sum of %u rays in order of level and path\n",
         tree->node_count);
-    if (tree->node_count > 0)
-        put_branch(&w, 0);
+    put_branch(&w, 0);
     return w.length;
 }

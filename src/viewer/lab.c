@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 
 /* How soon a question that nobody wants any more is noticed. */
 #define WAIT_SECONDS 0.02
@@ -296,6 +297,9 @@ static void work(vw_lab *lab, const vw_lab_question *question, uint64_t wish)
 static void *thread_main(void *context)
 {
     vw_lab *lab = context;
+    /* Behind the picture's workers. On Linux `who` 0 is this thread alone; where it is the whole
+     * process, nothing is lost but a little priority. */
+    setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + 1);
     pthread_mutex_lock(&lab->lock);
     while (!lab->should_quit) {
         uint64_t wish = atomic_load_explicit(&lab->newest, memory_order_relaxed);
