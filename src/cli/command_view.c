@@ -50,6 +50,7 @@ static vw_options viewer_options(const cli_options *options)
                         .platform = options->platform,
                         .shader_dir = options->shader_dir,
                         .record_path = options->record,
+                        .keys_path = options->keys,
                         .thread_count = thread_count(options),
                         .is_low_priority = true,
                         .is_size_fixed = cli_has(options, CLI_OPT_SIZE),
@@ -63,6 +64,7 @@ int cli_command_view(const cli_options *options)
     if (options->path_count > 1)
         return cli_usage_error(CLI_VIEW, "expected one scene, got %u", options->path_count);
     vw_options viewer = viewer_options(options);
+    viewer.has_own_keys = true;
     viewer.scene_path = options->path_count ? options->paths[0] : default_scene();
     fl_diags diags = {0};
     cli_catch_signals();

@@ -61,6 +61,7 @@ typedef enum cli_option_id {
     CLI_OPT_GROWTH,
     CLI_OPT_SOURCE,
     CLI_OPT_RECORD,
+    CLI_OPT_KEYS,
     CLI_OPT_PIXEL,
     CLI_OPT_PLATFORM,
     CLI_OPT_SHADER_DIR,
@@ -93,7 +94,7 @@ typedef struct cli_options {
     uint32_t sampler, solver, accel, dialect; /**< Values of the core's enums. */
     const char *outputs[CLI_OUTPUTS_MAX];
     uint32_t output_count;
-    const char *aov, *report, *out_dir, *sweep, *record, *platform, *shader_dir, *isa, *against;
+    const char *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;
     const char **paths; /**< Arguments that are no options; points into argv. */
     uint32_t path_count;
 } cli_options;

@@ -64,9 +64,15 @@ extern const size_t vw_command_count;
  */
 vw_dirty vw_command_run(const vw_command *command, vw_state *state, vw_amount amount);
 
+typedef struct vw_keymap vw_keymap;
+
+/** Its bindings there; NULL: those of the table. */
+const vw_binding *vw_command_bindings(const vw_command *command, const vw_keymap *keymap);
+
 /** The command bound to that input, with its factor; NULL: none. For holds `mods` may add Shift and
  * Alt. */
-const vw_command *vw_command_find(vw_binding_kind kind, int code, int mods, double *out_factor);
+const vw_command *vw_command_find(const vw_keymap *keymap, vw_binding_kind kind, int code, int mods,
+                                  double *out_factor);
 
 /** The command of that name, or NULL. */
 const vw_command *vw_command_named(const char *name);

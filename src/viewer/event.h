@@ -16,10 +16,10 @@ typedef enum vw_event_kind {
     VW_EVENT_SCROLL,
     VW_EVENT_RESIZE,
     VW_EVENT_DROP,
-    VW_EVENT_PASTE, /**< Text of the clipboard, in `path`, on one line. */
-    VW_EVENT_FOCUS, /**< The window lost the keyboard: everything held is released. */
+    VW_EVENT_PASTE,   /**< Text of the clipboard, in `path`, on one line. */
+    VW_EVENT_FOCUS,   /**< The window lost the keyboard: everything held is released. */
     VW_EVENT_ICONIFY, /**< The window became an icon (action GLFW_PRESS), or a window again. */
-    VW_EVENT_CLOSE  /**< The user asked the window to close. */
+    VW_EVENT_CLOSE    /**< The user asked the window to close. */
 } vw_event_kind;
 
 enum { VW_PATH_MAX = 1024 };

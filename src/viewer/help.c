@@ -69,7 +69,7 @@ void vw_help_layout(vw_help *help, const vw_overlay *overlay, vw_platform *platf
     uint32_t keys = 0, text = 0;
     FL_ASSERT(vw_command_count <= VW_HELP_ROWS_MAX);
     for (size_t i = 0; i < vw_command_count; i++) {
-        vw_words_keys(&vw_commands[i], platform, help->keys[i]);
+        vw_words_keys(&vw_commands[i], state->keymap, platform, help->keys[i]);
         if (!is_on_page(vw_commands[i].group, state->help_page))
             continue;
         keys = fl_max_u32(keys, vw_text_columns(help->keys[i]));

@@ -43,7 +43,7 @@ static vw_dirty run(vw_input *input, vw_state *state, const vw_command *command,
 static vw_dirty move(vw_input *input, vw_state *state, int key)
 {
     double factor;
-    const vw_command *command = vw_command_find(VW_BIND_HOLD, key, 0, &factor);
+    const vw_command *command = vw_command_find(state->keymap, VW_BIND_HOLD, key, 0, &factor);
     FL_ASSERT(command);
     if (input->held_mods & GLFW_MOD_SHIFT)
         factor *= FAST_FACTOR;
@@ -98,7 +98,7 @@ static vw_dirty release(vw_input *input, vw_state *state, int key)
 static vw_dirty press(vw_input *input, vw_state *state, int key, int mods, bool is_repeat)
 {
     double factor;
-    const vw_command *command = vw_command_find(VW_BIND_HOLD, key, mods, &factor);
+    const vw_command *command = vw_command_find(state->keymap, VW_BIND_HOLD, key, mods, &factor);
     if (command) {
         if (!input->is_held[key] && !is_repeat) {
             input->is_held[key] = true;
@@ -107,13 +107,13 @@ static vw_dirty press(vw_input *input, vw_state *state, int key, int mods, bool 
         }
         return VW_DIRTY_NONE;
     }
-    command = vw_command_find(VW_BIND_WHILE, key, mods, &factor);
+    command = vw_command_find(state->keymap, VW_BIND_WHILE, key, mods, &factor);
     if (command && !is_repeat && !input->while_on) {
         input->while_on = command;
         input->while_key = key;
         return run(input, state, command, VW_BIND_WHILE, (vw_amount){factor, 0.0});
     }
-    command = vw_command_find(VW_BIND_PRESS, key, mods, &factor);
+    command = vw_command_find(state->keymap, VW_BIND_PRESS, key, mods, &factor);
     if (!command || (is_repeat && !command->repeats))
         return VW_DIRTY_NONE;
     return run(input, state, command, VW_BIND_PRESS, (vw_amount){factor, 0.0});
@@ -152,11 +152,12 @@ static vw_dirty button_event(vw_input *input, vw_state *state, const vw_event *e
     }
     double factor;
     int mods = event->mods | input->held_mods;
-    const vw_command *click = vw_command_find(VW_BIND_CLICK, event->code, mods, &factor);
+    const vw_command *click =
+        vw_command_find(state->keymap, VW_BIND_CLICK, event->code, mods, &factor);
     if (click)
         return run(input, state, click, VW_BIND_CLICK, picture_position(input, state));
     if (!input->drag) {
-        input->drag = vw_command_find(VW_BIND_DRAG, event->code, mods, &factor);
+        input->drag = vw_command_find(state->keymap, VW_BIND_DRAG, event->code, mods, &factor);
         input->drag_button = event->code;
     }
     return VW_DIRTY_NONE;
@@ -183,7 +184,7 @@ static vw_dirty scroll_event(vw_input *input, vw_state *state, const vw_event *e
 {
     double factor;
     const vw_command *command =
-        vw_command_find(VW_BIND_WHEEL, 0, event->mods | input->held_mods, &factor);
+        vw_command_find(state->keymap, VW_BIND_WHEEL, 0, event->mods | input->held_mods, &factor);
     if (!command || event->y == 0.0)
         return VW_DIRTY_NONE;
     return run(input, state, command, VW_BIND_WHEEL, (vw_amount){factor * event->y, 0.0});

@@ -46,12 +46,27 @@ static void begin_scene(vw_session *session, fl_diags *diags)
     }
 }
 
+static bool load_keys(vw_session *session, fl_diags *diags)
+{
+    const vw_options *options = session->options;
+    if (!options->keys_path && !options->has_own_keys)
+        return true;
+    session->keymap = malloc(sizeof *session->keymap);
+    if (!session->keymap)
+        return fl_out_of_memory(diags, "the keys");
+    vw_keymap_init(session->keymap);
+    session->state.keymap = session->keymap;
+    return vw_keymap_load(session->keymap, options->keys_path, diags);
+}
+
 bool vw_session_open(vw_session *session, const vw_options *options, const char *scene_path,
                      uint32_t width, uint32_t height, fl_diags *diags)
 {
     *session = (vw_session){.options = options};
     session->state.width = width;
     session->state.height = height;
+    if (!load_keys(session, diags))
+        return false;
     if (!set_path(session, scene_path, diags) ||
         !options->loader.load(options->loader.context, session->scene_path, &session->scene, diags))
         return false;
@@ -91,6 +106,7 @@ void vw_session_close(vw_session *session)
     vw_insight_deinit(&session->insight);
     scene_deinit(&session->scene);
     free(session->rgba);
+    free(session->keymap);
     free(session->error_text);
     *session = (vw_session){0};
 }

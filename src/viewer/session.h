@@ -10,6 +10,7 @@
 #include "viewer/board.h"
 #include "viewer/history.h"
 #include "viewer/input.h"
+#include "viewer/keymap.h"
 #include "viewer/insight.h"
 #include "viewer/mix.h"
 #include "viewer/show.h"
@@ -21,6 +22,7 @@ typedef struct vw_session {
     vw_scene scene;
     vw_state state;
     vw_input input;
+    vw_keymap *keymap; /**< Owned; NULL: the table's. */
     fl_render *render;
     fl_progress progress; /**< As of the last refresh. */
     uint8_t *rgba;        /**< The picture shown: progress.width x progress.height. Owned. */
@@ -28,7 +30,7 @@ typedef struct vw_session {
     uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
-    vw_mix mix; /**< Of state.is_mixing. */
+    vw_mix mix;             /**< Of state.is_mixing. */
     vw_history history;
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */

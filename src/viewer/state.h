@@ -124,6 +124,7 @@ typedef struct vw_look {
 
 typedef struct vw_state {
     vw_look look, start;
+    const struct vw_keymap *keymap; /**< Borrowed; NULL: the command table's own. */
     /* About the scene, set at load. */
     double scene_scale; /**< What motion and lens are scaled by: its radius or its focus, the
                            smaller. */

@@ -39,6 +39,8 @@ typedef struct vw_options {
     const char
         *shader_dir; /**< Read shaders from here instead of the built-in ones; NULL: built-in. */
     const char *record_path; /**< Write all input to this log; NULL: no record. */
+    const char *keys_path;   /**< Other chords for commands (keymap.h); NULL: see has_own_keys. */
+    bool has_own_keys;       /**< Read the user's own file of keys, if there is one. */
     uint32_t thread_count;   /**< As fl_render_options. */
     bool is_low_priority;    /**< As fl_render_options. */
     bool is_size_fixed; /**< The user fixed the size: resizing the window only scales the picture.

@@ -73,17 +73,19 @@ static void add_mods(buffer *b, int mods)
         add(b, "Alt+");
 }
 
-void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW_KEYS_MAX])
+void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platform *platform,
+                   char out[VW_KEYS_MAX])
 {
     static const char *const buttons[] = {"left", "right", "middle"};
     buffer b = {out, VW_KEYS_MAX, 0};
     char label[16];
     int last_mods = 0;
     out[0] = 0;
-    for (const vw_binding *binding = command->bindings; binding->kind != VW_BIND_NONE; binding++) {
-        if (binding != command->bindings)
+    const vw_binding *bindings = vw_command_bindings(command, keymap);
+    for (const vw_binding *binding = bindings; binding->kind != VW_BIND_NONE; binding++) {
+        if (binding != bindings)
             add(&b, binding->mods != last_mods ? "  " : " ");
-        if (binding->mods != last_mods || binding == command->bindings)
+        if (binding->mods != last_mods || binding == bindings)
             add_mods(&b, binding->mods);
         last_mods = binding->mods;
         switch (binding->kind) {
@@ -313,7 +315,7 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
             if (vw_commands[i].group != (vw_group)group)
                 continue;
             char keys[VW_KEYS_MAX];
-            vw_words_keys(&vw_commands[i], NULL, keys);
+            vw_words_keys(&vw_commands[i], NULL, NULL, keys);
             add(&b, "| `%s` | %s |\n", keys, vw_commands[i].help);
         }
     }
@@ -339,6 +341,18 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
         "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
         "saved.\n");
+    add(&b,
+        "\n## Other keys\n\n`$XDG_CONFIG_HOME/firstlight/keys` (`~/.config/firstlight/keys`), or "
+        "the file of `--keys`, binds commands to other\nchords, in the order of the tables above; "
+        "the help in the window follows.\n\n```\nforward = KP_8 KP_2      # a comment\n"
+        "focus-at = Alt+left\nexposure = Ctrl+B Ctrl+Shift+B\nprint = none\n```\n\n"
+        "Keys are called as in GLFW (`LEFT_BRACKET`) or as a US keyboard prints them (`[`). A "
+        "chord "
+        "that two commands share,\nan unknown command or key is an error at its line. A recorded "
+        "log holds keys, not commands: replay it with the same `--keys`.\n\nThe commands: ");
+    for (size_t i = 0; i < vw_command_count; i++)
+        add(&b, "%s`%s`", i ? ", " : "", vw_commands[i].name);
+    add(&b, ".\n");
     add_strips(&b);
     return b.length;
 }

@@ -13,7 +13,8 @@ enum { VW_KEYS_MAX = 64, VW_STATUS_MAX = 20 };
 
 /** The inputs of a command as people read them ("[ ]  Shift+[ ]", "left drag"). Keys are named as
  * `platform` says the user's keyboard prints them; NULL: as on a US keyboard. */
-void vw_words_keys(const vw_command *command, vw_platform *platform, char out[VW_KEYS_MAX]);
+void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platform *platform,
+                   char out[VW_KEYS_MAX]);
 
 /** One item of the status line: a dim label (may be empty) and a bright value. */
 typedef struct vw_status {
