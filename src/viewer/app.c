@@ -68,6 +68,13 @@ static void wake(void *context)
     platform->ops->wake(platform);
 }
 
+static void upload(vw_view *view, vw_session *session)
+{
+    uint32_t width, height;
+    const uint8_t *bytes = vw_session_window(session, &width, &height);
+    vw_view_upload(view, bytes, width, height);
+}
+
 static void show_error(app *a)
 {
     vw_session_take_error(&a->session, &a->diags);
@@ -316,8 +323,7 @@ static void refresh_if_due(app *a)
     bool is_newer = vw_session_refresh(session, &a->diags);
     vw_pace_shown(&a->pace, &session->progress, a->now_ms);
     if (is_newer) {
-        vw_view_upload(a->view, vw_session_shown(session), session->progress.width,
-                       session->progress.height);
+        upload(a->view, session);
         a->needs_draw = true;
     }
     a->needs_draw |=

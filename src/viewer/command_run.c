@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "viewer/command_run.h"
 
+#include <string.h>
+
 #include "viewer/camera.h"
 
 /* Scene scales a second at speed 1: to what is in focus in about four seconds. */
@@ -47,8 +49,56 @@ vw_dirty vw_run_speed(vw_state *state, vw_amount amount)
     return VW_DIRTY_WINDOW;
 }
 
+/* The corner of a rectangle, held within the picture. */
+static void set_corner(const vw_state *state, double x, double y, double out[2])
+{
+    out[0] = fl_clamp(x, 0.0, (double)state->picture_width);
+    out[1] = fl_clamp(y, 0.0, (double)state->picture_height);
+}
+
+static vw_dirty end_region(vw_state *state)
+{
+    enum { SMALLEST = 4 };
+    const double *a = state->region_from, *b = state->region_to;
+    uint32_t rect[4];
+    for (int i = 0; i < 2; i++) {
+        rect[i] = (uint32_t)fl_min(a[i], b[i]);
+        rect[2 + i] = (uint32_t)ceil(fl_max(a[i], b[i])) - rect[i];
+    }
+    bool was_dragged = state->is_region_dragged;
+    state->is_region_armed = state->is_region_dragged = false;
+    if (was_dragged && rect[2] >= SMALLEST && rect[3] >= SMALLEST) {
+        memcpy(state->look.region, rect, sizeof rect);
+        vw_state_say(state, "region of %u \303\227 %u pixels", rect[2], rect[3]);
+        return VW_DIRTY_CAMERA;
+    }
+    if (state->look.region[2] == 0) {
+        vw_state_say(state, "hold and drag to render a region");
+        return VW_DIRTY_WINDOW;
+    }
+    memset(state->look.region, 0, sizeof state->look.region);
+    vw_state_say(state, "the whole picture");
+    return VW_DIRTY_CAMERA;
+}
+
+vw_dirty vw_run_region(vw_state *state, vw_amount amount)
+{
+    if (amount.x == 0.0)
+        return end_region(state);
+    state->is_region_armed = true;
+    return VW_DIRTY_WINDOW;
+}
+
 vw_dirty vw_run_look(vw_state *state, vw_amount amount)
 {
+    if (state->is_region_armed) {
+        if (!state->is_region_dragged)
+            set_corner(state, state->cursor_x - amount.x, state->cursor_y - amount.y,
+                       state->region_from);
+        state->is_region_dragged = true;
+        set_corner(state, state->cursor_x, state->cursor_y, state->region_to);
+        return VW_DIRTY_WINDOW;
+    }
     vw_camera_look(state, amount.x, amount.y);
     return VW_DIRTY_CAMERA;
 }

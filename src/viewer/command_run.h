@@ -20,7 +20,7 @@ vw_run_fn vw_run_orbit, vw_run_reset, vw_run_print, vw_run_paste, vw_run_undo, v
 vw_run_fn vw_run_focus, vw_run_focus_at, vw_run_focus_through, vw_run_assist, vw_run_rack,
     vw_run_rack_time, vw_run_aperture, vw_run_lens, vw_run_fov;
 /* Picture. */
-vw_run_fn vw_run_light_samples, vw_run_sample_cap, vw_run_depth, vw_run_exposure, vw_run_pause;
+vw_run_fn vw_run_region, vw_run_light_samples, vw_run_sample_cap, vw_run_depth, vw_run_exposure, vw_run_pause;
 vw_run_fn vw_run_layer, vw_run_pin, vw_run_compare, vw_run_flip, vw_run_inspect;
 /* Understand. */
 vw_run_fn vw_run_rays, vw_run_noise, vw_run_light_auto, vw_run_needs, vw_run_trade, vw_run_stress;

@@ -40,7 +40,7 @@ const vw_command vw_commands[] = {
      {KEY(0, EQUAL, 1), KEY(0, MINUS, -1), KEY(0, PAGE_UP, 1), KEY(0, PAGE_DOWN, -1)}, false,
      WINDOW,
      "flying speed \303\2272, \303\2672", vw_run_speed, vw_value_speed},
-    {"look", VW_GROUP_MOVE, {DRAG(LEFT)}, false, CAMERA,
+    {"look", VW_GROUP_MOVE, {DRAG(LEFT)}, false, CAMERA | WINDOW,
      "look around; orbit", vw_run_look, NULL},
     {"pan", VW_GROUP_MOVE, {DRAG(MIDDLE)}, false, CAMERA,
      "pan", vw_run_pan, NULL},
@@ -86,6 +86,8 @@ const vw_command vw_commands[] = {
     {"fov", VW_GROUP_LENS, {WHEEL(CTRL, 1)}, false, CAMERA | WINDOW,
      "field of view", vw_run_fov, vw_value_fov},
 
+    {"region", VW_GROUP_PICTURE, {WHILE(Z)}, false, CAMERA | WINDOW,
+     "hold and drag: only that part; tap: all", vw_run_region, NULL},
     {"light", VW_GROUP_PICTURE, {KEY(0, Y, 1), KEY(SHIFT, Y, -1)}, false, WINDOW,
      "pick a light to edit", vw_run_light_select, vw_value_light},
     {"light-switch", VW_GROUP_PICTURE, {KEY(0, U, 1)}, false, LIGHT | WINDOW,

@@ -80,18 +80,18 @@ static void fill_holes(float *rgb, const float *samples, uint32_t width, uint32_
 
 static bool take(vw_mix *mix, fl_render *render, int which, fl_progress *out_progress)
 {
-    fl_progress progress;
     fl_render_mean(render, NULL, 0, out_progress); /* Its size, and what it is of. */
     size_t pixels = (size_t)out_progress->width * out_progress->height;
-    if (pixels == 0 || out_progress->generation != mix->generations[which] ||
-        !reserve(mix, pixels) ||
+    if (pixels == 0 || out_progress->generation != mix->generations[which] || !reserve(mix, pixels))
+        return false;
+    bool has_holes = out_progress->complete_samples == 0;
+    /* The samples before the means: what gets a sample in between is filled, never left black. */
+    if ((has_holes &&
+         !fl_render_copy_map(render, FL_RENDER_SAMPLES, mix->samples, mix->pixels, out_progress)) ||
         !fl_render_mean(render, mix->rgb[which], 3 * mix->pixels, out_progress))
         return false;
-    if (out_progress->complete_samples > 0)
-        return true;
-    if (!fl_render_copy_map(render, FL_RENDER_SAMPLES, mix->samples, mix->pixels, &progress))
-        return false;
-    fill_holes(mix->rgb[which], mix->samples, out_progress->width, out_progress->height);
+    if (has_holes)
+        fill_holes(mix->rgb[which], mix->samples, out_progress->width, out_progress->height);
     return true;
 }
 

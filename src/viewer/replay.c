@@ -86,6 +86,13 @@ static void wake(void *context)
     platform->ops->wake(platform);
 }
 
+static void upload(vw_view *view, vw_session *session)
+{
+    uint32_t width, height;
+    const uint8_t *bytes = vw_session_window(session, &width, &height);
+    vw_view_upload(view, bytes, width, height);
+}
+
 /* Tone-map, upload, draw: what the window does with a newer picture. */
 static bool show(replay *r, bool *out_is_new)
 {
@@ -94,8 +101,7 @@ static bool show(replay *r, bool *out_is_new)
     if (r->diags->error_count)
         return false;
     if (*out_is_new)
-        vw_view_upload(r->view, vw_session_shown(session), session->progress.width,
-                       session->progress.height);
+        upload(r->view, session);
     char notes[1024];
     vw_session_notes(session, notes, sizeof notes);
     vw_board board;

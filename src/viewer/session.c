@@ -106,6 +106,7 @@ void vw_session_close(vw_session *session)
     vw_insight_deinit(&session->insight);
     scene_deinit(&session->scene);
     free(session->rgba);
+    free(session->backdrop);
     free(session->keymap);
     free(session->error_text);
     *session = (vw_session){0};
@@ -134,8 +135,50 @@ static void forget_parts(vw_session *session)
     free(unseen);
 }
 
+/* A region begins: keep what is around it, dimmed. Memory is no reason to fail: it is only shown.
+ */
+static void keep_backdrop(vw_session *session)
+{
+    const vw_state *state = &session->state;
+    uint32_t rect[4], width = state->picture_width, height = state->picture_height;
+    if (!vw_state_region(state, rect)) {
+        free(session->backdrop);
+        session->backdrop = NULL;
+        return;
+    }
+    if (session->backdrop && session->backdrop_width == width && session->backdrop_height == height)
+        return;
+    free(session->backdrop);
+    session->backdrop = calloc((size_t)width * height, 4);
+    session->backdrop_width = width;
+    session->backdrop_height = height;
+    bool has_whole = session->progress.width == width && session->progress.height == height &&
+                     session->revision != 0;
+    for (size_t i = 0; session->backdrop && i < (size_t)width * height * 4; i++)
+        session->backdrop[i] = i % 4 == 3 ? 255 : has_whole ? session->rgba[i] / 3 : 0;
+}
+
+const uint8_t *vw_session_window(vw_session *session, uint32_t *out_width, uint32_t *out_height)
+{
+    const uint8_t *shown = vw_session_shown(session);
+    uint32_t rect[4];
+    *out_width = session->progress.width;
+    *out_height = session->progress.height;
+    if (!session->backdrop || !vw_state_region(&session->state, rect) || rect[2] != *out_width ||
+        rect[3] != *out_height || session->backdrop_width < rect[0] + rect[2] ||
+        session->backdrop_height < rect[1] + rect[3])
+        return shown;
+    *out_width = session->backdrop_width;
+    *out_height = session->backdrop_height;
+    for (uint32_t y = 0; y < rect[3]; y++)
+        memcpy(session->backdrop + 4 * ((size_t)(rect[1] + y) * *out_width + rect[0]),
+               shown + (size_t)4 * y * rect[2], (size_t)4 * rect[2]);
+    return session->backdrop;
+}
+
 bool vw_session_restart(vw_session *session, fl_diags *diags)
 {
+    keep_backdrop(session);
     fl_params params;
     vw_state_params(&session->state, &session->scene.params, &params);
     session->show.is_asked = false;

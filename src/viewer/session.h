@@ -30,6 +30,8 @@ typedef struct vw_session {
     uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
+    uint8_t *backdrop; /**< Around a region: the last whole picture, dimmed. Owned. */
+    uint32_t backdrop_width, backdrop_height;
     vw_mix mix;             /**< Of state.is_mixing. */
     vw_history history;
     vw_bookmarks bookmarks;
@@ -82,6 +84,10 @@ bool vw_session_refresh(vw_session *session, fl_diags *diags);
 
 /** The bytes to show: progress.width x progress.height, RGBA. Valid until the next refresh. */
 const uint8_t *vw_session_shown(vw_session *session);
+
+/** What the window shows: these bytes, or with a region its picture within all of it; of that
+ * size. Valid until the next refresh. */
+const uint8_t *vw_session_window(vw_session *session, uint32_t *out_width, uint32_t *out_height);
 
 /** Wait until what stands behind the pixels is there, for pictures of the window. */
 void vw_session_settle(vw_session *session, fl_diags *diags);

@@ -28,8 +28,10 @@ vw_dirty vw_session_pick(vw_session *session, fl_diags *diags)
         return VW_DIRTY_NONE;
     double depths[SIDE * SIDE];
     size_t count = 0;
-    double left = state->pick_x + (double)params.crop_x - SIDE / 2,
-           top = state->pick_y + (double)params.crop_y - SIDE / 2;
+    double left, top;
+    vw_state_origin(state, &params, &left, &top);
+    left += state->pick_x - SIDE / 2;
+    top += state->pick_y - SIDE / 2;
     for (int i = 0; i < SIDE * SIDE; i++) {
         fl_pick pick;
         if (!fl_trace_pick(frame, left + i % SIDE, top + i / SIDE, &pick)) {
@@ -51,10 +53,10 @@ vw_dirty vw_session_pick_through(vw_session *session, fl_diags *diags)
     fl_frame *frame = frame_of(session, &params, diags);
     if (!frame)
         return VW_DIRTY_NONE;
-    double focus = 0.0;
+    double focus = 0.0, x, y;
     fl_trace_seen seen;
-    if (!fl_trace_focus(frame, state->pick_x + (double)params.crop_x,
-                        state->pick_y + (double)params.crop_y, &focus, &seen))
+    vw_state_origin(state, &params, &x, &y);
+    if (!fl_trace_focus(frame, x + state->pick_x, y + state->pick_y, &focus, &seen))
         fl_out_of_memory(diags, "picking");
     fl_frame_release(frame);
     vw_dirty dirty = vw_state_focus_at(state, focus);

@@ -313,7 +313,9 @@ vw_dirty vw_insight_rays(vw_session *session, fl_diags *diags)
     free(insight->rays_text);
     free(insight->rays_lines);
     insight->rays_text = insight->rays_lines = NULL;
-    if (fl_raytree_trace(frame, frame->x0 + state->rays_x, frame->y0 + state->rays_y,
+    double left, top;
+    vw_state_origin(state, &params, &left, &top);
+    if (fl_raytree_trace(frame, (uint32_t)left + state->rays_x, (uint32_t)top + state->rays_y,
                          state->rays_sample, &tree) &&
         fl_raytree_find_blockers(frame, &tree)) {
         insight->rays_text = tree_text(frame, &tree, false);

@@ -106,10 +106,13 @@ static void pixel_lines(vw_session *session, lines *l)
     double x = floor(state->cursor_x), y = floor(state->cursor_y);
     float rgb[3];
     uint32_t samples;
-    double rmse;
-    if (x < 0.0 || y < 0.0 || x >= (double)session->progress.width ||
-        y >= (double)session->progress.height ||
-        !fl_render_pixel(session->render, (uint32_t)x, (uint32_t)y, rgb, &samples, &rmse))
+    double rmse, left, top;
+    uint32_t region[4] = {0};
+    vw_state_region(state, region);
+    double in_x = x - region[0], in_y = y - region[1]; /* Of what is rendered. */
+    if (in_x < 0.0 || in_y < 0.0 || in_x >= (double)session->progress.width ||
+        in_y >= (double)session->progress.height ||
+        !fl_render_pixel(session->render, (uint32_t)in_x, (uint32_t)in_y, rgb, &samples, &rmse))
         return;
     line(l, "pixel %.0f %.0f: %.4g %.4g %.4g, %u samples", x, y, (double)rgb[0], (double)rgb[1],
          (double)rgb[2], samples);
@@ -122,7 +125,8 @@ static void pixel_lines(vw_session *session, lines *l)
     fl_diags diags = {0};
     vw_state_params(state, &session->scene.params, &params);
     fl_frame *frame = fl_frame_create(session->scene.compiled, &params, &diags);
-    if (frame && fl_trace_pick(frame, x + 0.5 + params.crop_x, y + 0.5 + params.crop_y, &pick))
+    vw_state_origin(state, &params, &left, &top);
+    if (frame && fl_trace_pick(frame, x + 0.5 + left, y + 0.5 + top, &pick))
         pick_lines(session, l, &params, &pick);
     fl_frame_release(frame);
     fl_diags_deinit(&diags);
@@ -136,6 +140,9 @@ void vw_session_notes(vw_session *session, char *out, size_t out_bytes)
     out[0] = 0;
     fl_params params;
     vw_state_params(state, &session->scene.params, &params);
+    uint32_t region[4];
+    if (vw_state_region(state, region))
+        line(&l, "region %u x %u at %u, %u", region[2], region[3], region[0], region[1]);
     if (state->is_mixing)
         line(&l, "preview of light %u", state->light + 1);
     if (state->layer != VW_LAYER_BEAUTY)

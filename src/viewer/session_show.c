@@ -212,7 +212,9 @@ static bool compose_comparison(vw_session *session, bool has_layer, size_t pixel
     if (state->compare != VW_COMPARE_WIPE)
         return shows_difference ? has_mean : has_layer;
     uint32_t width = session->progress.width;
-    uint32_t edge = (uint32_t)fl_clamp(state->cursor_x, 0.0, (double)width);
+    uint32_t region[4] = {0};
+    vw_state_region(state, region);
+    uint32_t edge = (uint32_t)fl_clamp(state->cursor_x - region[0], 0.0, (double)width);
     for (uint32_t y = 0; y < session->progress.height; y++) {
         size_t row = (size_t)y * width * 4;
         if (!has_layer)

@@ -89,7 +89,7 @@ bool vw_look_is_same(const vw_look *a, const vw_look *b)
 {
     return is_same_camera(&a->camera, &b->camera) && a->depth_limit == b->depth_limit &&
            a->light_samples == b->light_samples && a->sample_cap == b->sample_cap &&
-           vw_lights_are_same(a, b);
+           memcmp(a->region, b->region, sizeof a->region) == 0 && vw_lights_are_same(a, b);
 }
 
 /* The picture that the parameters ask for, in a window that may have another size. */
@@ -175,6 +175,32 @@ void vw_state_params(const vw_state *state, const fl_params *base, fl_params *ou
         out_params->width = state->picture_width;
         out_params->height = state->picture_height;
     }
+    uint32_t region[4];
+    if (vw_state_region(state, region)) {
+        out_params->crop_x += region[0];
+        out_params->crop_y += region[1];
+        out_params->crop_w = region[2];
+        out_params->crop_h = region[3];
+    }
+}
+
+bool vw_state_region(const vw_state *state, uint32_t out_rect[4])
+{
+    const uint32_t *r = state->look.region;
+    if (r[2] == 0 || r[0] >= state->picture_width || r[1] >= state->picture_height)
+        return false;
+    memcpy(out_rect, r, 4 * sizeof *r);
+    out_rect[2] = fl_min_u32(r[2], state->picture_width - r[0]);
+    out_rect[3] = fl_min_u32(r[3], state->picture_height - r[1]);
+    return true;
+}
+
+void vw_state_origin(const vw_state *state, const fl_params *params, double *out_x, double *out_y)
+{
+    uint32_t region[4] = {0};
+    vw_state_region(state, region);
+    *out_x = (double)params->crop_x - (double)region[0];
+    *out_y = (double)params->crop_y - (double)region[1];
 }
 
 void vw_state_say(vw_state *state, const char *format, ...)

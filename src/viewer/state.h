@@ -117,6 +117,7 @@ typedef struct vw_look {
     uint32_t depth_limit;
     uint32_t light_samples; /**< 0: each light's own. */
     uint32_t sample_cap;
+    uint32_t region[4];   /**< x, y, width, height: only that part of the picture; width 0: all. */
     uint32_t light_count; /**< 0: none that can be edited; the scene's own then. */
     fl_light lights[VW_LIGHTS_MAX];
     fl_vec3 lit_colors[VW_LIGHTS_MAX]; /**< What a light that is off (black) comes back to. */
@@ -139,10 +140,12 @@ typedef struct vw_state {
     double rack_from, rack_to;
     double rack_seconds;            /**< How long racking takes. */
     uint32_t rack_left, rack_ticks; /**< Steps of the clock to go; 0: not racking; of all. */
-    uint32_t light;                 /**< The one that is edited. */
-    bool is_mixing;                 /**< Its colour is: two pictures are mixed for the display. */
-    uint64_t mix_until_ms;          /**< When that ends if nothing else comes; log time. */
-    uint32_t slot;                  /**< Bookmark that a command means, 1 to VW_SLOT_COUNT. */
+    bool is_region_armed, is_region_dragged; /**< While Z is down; a rectangle was begun. */
+    double region_from[2], region_to[2];     /**< Its corners, picture pixels. */
+    uint32_t light;                          /**< The one that is edited. */
+    bool is_mixing;        /**< Its colour is: two pictures are mixed for the display. */
+    uint64_t mix_until_ms; /**< When that ends if nothing else comes; log time. */
+    uint32_t slot;         /**< Bookmark that a command means, 1 to VW_SLOT_COUNT. */
     /* What is shown. */
     vw_layer layer;
     vw_assist assist;
@@ -184,6 +187,13 @@ void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled
 
 /** The parameters of the picture to render now: `base` (the scene's) with the look over it. */
 void vw_state_params(const vw_state *state, const fl_params *base, fl_params *out_params);
+
+/** The region as it lies in the present picture; false: the whole picture is rendered. */
+bool vw_state_region(const vw_state *state, uint32_t out_rect[4]);
+
+/** The pixel of the whole picture that (0, 0) of the window's picture is, for `params` of
+ * vw_state_params: not 0 in scenes that are crops. */
+void vw_state_origin(const vw_state *state, const fl_params *params, double *out_x, double *out_y);
 
 /** Say something on screen. */
 void vw_state_say(vw_state *state, const char *format, ...) FL_PRINTF(2, 3);

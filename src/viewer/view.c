@@ -18,6 +18,7 @@ static const vw_ink bright_ink = {240, 242, 245, 255};
 static const vw_ink dim_ink = {150, 160, 172, 255};
 static const vw_ink alarm_ink = {255, 120, 105, 255};
 static const vw_ink bar_ink = {255, 176, 64, 255};
+static const vw_ink region_ink = {255, 176, 64, 70};
 static const vw_ink track_ink = {255, 255, 255, 28};
 
 struct vw_view {
@@ -183,6 +184,16 @@ static void draw_board(vw_view *view, const vw_state *state, const vw_board *boa
     vw_board_draw(board, view->overlay, right, top, width, bottom - margin, scale);
 }
 
+/* The rectangle that is being dragged. */
+static void draw_region(vw_view *view, const vw_state *state)
+{
+    const double *a = state->region_from, *b = state->region_to;
+    double scale = state->picture_scale;
+    vw_overlay_panel(view->overlay, state->picture_x + scale * fl_min(a[0], b[0]),
+                     state->picture_y + scale * fl_min(a[1], b[1]), scale * fabs(a[0] - b[0]),
+                     scale * fabs(a[1] - b[1]), 0.0, region_ink);
+}
+
 bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progress,
                   const vw_texts *texts, fl_diags *diags)
 {
@@ -201,6 +212,8 @@ bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progr
     if (!vw_overlay_set_sizes(view->overlay, sizes, diags))
         return false;
     vw_overlay_begin(view->overlay);
+    if (state->is_region_dragged)
+        draw_region(view, state);
     double bottom = (double)state->height, notes_end[2] = {0.0, 0.0};
     /* The help shows the same values, and would lie over the line. */
     if (state->is_hud_shown && state->help_page == 0)

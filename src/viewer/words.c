@@ -279,6 +279,8 @@ static void add_strips(buffer *b)
          "two colours meet in what is sharp."},
         {"compare", "A picture is pinned (V) and the lens opened; wipe at the cursor and signed "
                     "difference (Shift+V)."},
+        {"region", "A region: drawn while Z is down, rendered alone; a tap on Z brings the whole "
+                   "picture back."},
         {"lights",
          "A light is picked (Y) and made brighter (Up): a mix of two pictures until the hand "
          "rests; warmer (Right); the other one off (U)."},

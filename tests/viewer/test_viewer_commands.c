@@ -163,6 +163,7 @@ static const struct {
     {"aperture", APERTURE, VW_DIRTY_CAMERA},
     {"lens", APERTURE | MESSAGE, VW_DIRTY_CAMERA},
     {"fov", FOV, VW_DIRTY_CAMERA},
+    {"region", 0, VW_DIRTY_WINDOW},
     {"light", MESSAGE, VW_DIRTY_WINDOW},
     {"light-switch", LAMP | MESSAGE, VW_DIRTY_LIGHT},
     {"light-intensity", LAMP | MESSAGE, VW_DIRTY_LIGHT},
