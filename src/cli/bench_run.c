@@ -265,11 +265,50 @@ static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compi
     return true;
 }
 
+/* Wall time of compiling by one thread and by all, in turn. */
+static bool run_build_threads(const bench_setup *setup, const bench_mesh *mesh)
+{
+    uint32_t rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
+    double ms[2][BENCH_ROUNDS_MAX], gain[BENCH_ROUNDS_MAX];
+    fl_pool *pool = fl_pool_create(setup->thread_count, setup->diags);
+    bool ok = pool != NULL;
+    for (uint32_t r = 0; ok && r < rounds; r++) {
+        for (int k = 0; ok && k < 2; k++) {
+            fl_compiled *scene =
+                bench_mesh_compile(mesh, &setup->compile, k ? pool : NULL, setup->diags);
+            ok = scene != NULL;
+            ms[k][r] = ok ? scene->build_seconds * 1e3 : 0.0;
+            fl_compiled_release(scene);
+        }
+        gain[r] = ms[0][r] / ms[1][r];
+    }
+    fl_pool_destroy(pool);
+    if (!ok)
+        return false;
+    bench_figure one = bench_figure_of(ms[0], rounds), all = bench_figure_of(ms[1], rounds),
+                 times = bench_figure_of(gain, rounds);
+    uint32_t threads = fl_thread_count(setup->thread_count);
+    if (setup->rows)
+        json_array_append_new(
+            setup->rows,
+            json_pack("{s:s, s:I, s:s, s:I, s:f, s:f, s:f, s:f, s:f}", "mesh", mesh->name,
+                      "triangles", (json_int_t)mesh->face_count, "kind", "build-wall", "threads",
+                      (json_int_t)threads, "ms_1_thread", one.median, "ms", all.median, "speedup",
+                      times.median, "speedup_min", times.min, "speedup_max", times.max));
+    else
+        printf("%-12s %8u  %-12s %8.2f ms by 1 thread, %8.2f ms by %u: %.2f (%.2f to %.2f)\n",
+               mesh->name, mesh->face_count, "build-wall", one.median, all.median, threads,
+               times.median, times.min, times.max);
+    fflush(stdout);
+    return true;
+}
+
 bool bench_mesh_run(const bench_setup *setup, const bench_mesh *mesh)
 {
     opponent o = {.peer = setup->peer};
     fl_compiled *scene = NULL;
-    bool ok = run_build(setup, mesh, &scene, &o) && run_kinds(setup, mesh, scene, &o);
+    bool ok = run_build(setup, mesh, &scene, &o) && run_build_threads(setup, mesh) &&
+              run_kinds(setup, mesh, scene, &o);
     for (int k = 0; o.peer && k < 2; k++)
         o.peer->destroy(o.scene[k]);
     fl_compiled_release(scene);

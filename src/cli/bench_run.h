@@ -15,6 +15,7 @@ enum { BENCH_ROUNDS_MAX = 64 };
 
 typedef struct bench_setup {
     uint32_t rounds, side; /**< Pairs of runs; pixels of the square picture. */
+    uint32_t thread_count; /**< As fl_thread_count takes it. */
     fl_compile_options compile;
     const bench_peer *peer;  /**< NULL: nobody. */
     const char *peer_config; /**< Passed on to it. */

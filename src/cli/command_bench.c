@@ -84,6 +84,7 @@ int cli_command_bench(const cli_options *options)
     bool is_json = cli_has(options, CLI_OPT_JSON);
     bench_setup setup = {.rounds = cli_has(options, CLI_OPT_REPEATS) ? options->repeats : ROUNDS,
                          .side = side_of(options),
+                         .thread_count = options->threads,
                          .compile = {.accel = (fl_accel)options->accel,
                                      .has_isa = cli_has(options, CLI_OPT_ISA),
                                      .octree_height = options->octree_height},
