@@ -1,243 +1,178 @@
-/* SPDX-License-Identifier: MIT */
-#include "core/bvh.h"
-
+/* SPDX-License-Identifier: MIT
+ *
+ * Three steps. The top: ranges are split in rounds, those of a round side by side, until they are
+ * small. Subtrees: each small range is split down to leaves by one thread, and its binary tree
+ * folded into nodes of eight. Last the top is folded in the same way, and all put together.
+ *
+ * Folding chooses, among all ways to leave out nodes of the binary tree, the one whose nodes have
+ * the least area in all: a walk visits the fewest.
+ */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* x y z and one lane to spare, whatever the machine: the tree is the same everywhere. */
-#define FL_W 4
-#include "core/wide.h"
+#include "core/bvh_split.h"
 
 enum {
-    BIN_COUNT = 16,
-    SAH_DEPTH_MAX = 28,   /* Deeper, ranges are halved by count: 12 more levels reach any size. */
-    SUBTREE_ITEMS = 4096, /* Ranges up to this size are built as one piece by one thread. */
+    SAH_DEPTH_MAX = 56, /* Deeper, ranges are halved by count: 28 more levels reach any size. */
+    PIECE_ITEMS = 4096, /* Ranges up to this size are split by one thread. */
     ITEM_COUNT_MAX = 1 << 28 /* Leaf indices have 28 bits. */
 };
 
-_Static_assert((FL_BVH_WIDTH - 1) * (SAH_DEPTH_MAX + 12) + 1 <= FL_BVH_STACK_MAX,
+_Static_assert((FL_BVH_WIDTH - 1) * (SAH_DEPTH_MAX + 28) + 1 <= FL_BVH_STACK_MAX,
                "stack too small");
 
-typedef struct wide_box {
-    fl_wf lo, hi;
-} wide_box;
-
-/* What is partitioned: boxes travel with their item, so every pass reads memory in order. */
-typedef struct item {
-    fl_wf lo; /* Fourth: the item's number, as bits. */
-    fl_wf hi; /* Fourth: 0. */
-} item;
-
-typedef struct range {
-    uint32_t first, count;
+/* A node of the binary tree, with its cheapest forms. */
+typedef struct pair {
     wide_box box;
-    wide_box centers; /* Of lo + hi: twice the centres. */
-} range;
+    uint32_t first, count;           /* Of items. */
+    uint32_t left, right;            /* left FL_NONE: not split. */
+    float cost[FL_BVH_WIDTH + 1];    /* [n]: area of all nodes, as n children of another at most. */
+    uint8_t share[FL_BVH_WIDTH + 1]; /* [n]: how many of the n come from the left; 0: as n - 1. */
+    uint8_t own_left, own_right;     /* Children as a node of its own. */
+} pair;
 
-/* Nodes and leaves of one subtree, with indices of their own; put together at the end. */
+/* Binary nodes, children behind their parents. */
+typedef struct pairs {
+    pair *at;
+    uint32_t count, capacity;
+} pairs;
+
+typedef struct pair_ref {
+    const pairs *in;
+    uint32_t k;
+} pair_ref;
+
+/* Nodes and leaves in the order of their making. */
 typedef struct tree {
     fl_bvh_node *nodes;
     uint32_t *leaf_items;
     uint32_t node_count, node_capacity, leaf_count, leaf_capacity;
-    bool failed;
 } tree;
 
-/* A subtree that hangs on a slot of a node of the top tree. */
-typedef struct pending {
+/* One thread's own. */
+typedef struct workspace {
+    pairs pairs;
+    tree made;
+    bool failed;
+} workspace;
+
+/* A range of items that one thread splits. */
+typedef struct piece {
     range items;
-    uint32_t node, slot, depth;
-    tree built;
-} pending;
+    uint32_t depth;
+    pair_ref root;
+} piece;
+
+/* A pair of the top that is to be split, and what comes of it. */
+typedef struct waiting {
+    range items, half[2];
+    uint32_t pair;
+} waiting;
+
+/* What hangs on the top: a leaf or a subtree of nodes, in a workspace's tree. */
+typedef struct branch {
+    pair_ref root;
+    uint32_t child; /* As if its nodes and leaves were the only ones. */
+    uint32_t thread, first_node, node_count, first_leaf, leaf_count;
+    uint32_t node_base, leaf_base; /* In the whole. */
+} branch;
 
 typedef struct builder {
     item *items;
+    const fl_bvh_box *boxes;
+    uint32_t count, thread_count;
     float pad;
-    pending *pending; /* NULL: ranges are built to the end where they occur. */
-    uint32_t pending_count, pending_capacity;
+    bool is_quick;
+    /* The top. Pairs that are not split are pieces: `right` is the piece's number. */
+    pairs pairs;
+    tree top;
+    waiting *round, *next; /* To be split in this round and the next. */
+    uint32_t next_count, depth;
+    piece *pieces;
+    branch *branches;
+    uint32_t piece_count, piece_capacity, branch_count, branch_capacity;
+    workspace *workspaces;
+    fl_bvh *out;
 } builder;
 
-static inline wide_box box_empty(void)
+static bool reserve(void *array, uint32_t *capacity, uint32_t needed, size_t item_bytes)
 {
-    return (wide_box){{INFINITY, INFINITY, INFINITY, INFINITY},
-                      {-INFINITY, -INFINITY, -INFINITY, -INFINITY}};
-}
-
-static inline void box_grow(wide_box *box, fl_wf lo, fl_wf hi)
-{
-    box->lo = fl_wf_min(lo, box->lo);
-    box->hi = fl_wf_max(hi, box->hi);
-}
-
-static inline float box_half_area(const wide_box *box)
-{
-    fl_wf side = box->hi - box->lo;
-    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
-}
-
-/* The number is kept out of the sum: as a float it would be a slow one. */
-static inline fl_wf twice_center(const item *it)
-{
-    const fl_wi xyz = {-1, -1, -1, 0};
-    return (fl_wf)((fl_wi)it->lo & xyz) + it->hi;
-}
-
-static inline void range_grow(range *r, const item *it)
-{
-    fl_wf center = twice_center(it);
-    box_grow(&r->box, it->lo, it->hi);
-    box_grow(&r->centers, center, center);
-}
-
-static range range_of(const item *items, uint32_t first, uint32_t count)
-{
-    range r = {first, count, box_empty(), box_empty()};
-    for (uint32_t i = first; i < first + count; i++)
-        range_grow(&r, &items[i]);
-    return r;
-}
-
-/* --- Choosing a split ------------------------------------------------------------------------ */
-
-typedef struct bins {
-    wide_box box[BIN_COUNT];
-    uint32_t count[BIN_COUNT];
-} bins;
-
-typedef struct split {
-    int axis; /* -1: none. */
-    int bin;  /* Items in lower bins go left. */
-    float cost;
-} split;
-
-static inline int bin_of(fl_wf center, int axis, float lo, float scale)
-{
-    int bin = (int)((center[axis] - lo) * scale);
-    return bin < BIN_COUNT - 1 ? bin : BIN_COUNT - 1;
-}
-
-static float bin_scale(const range *r, int axis)
-{
-    float extent = r->centers.hi[axis] - r->centers.lo[axis];
-    float scale = (float)BIN_COUNT * 0.9999f / extent;
-    return extent > 0.0f && scale < 1e30f ? scale : 0.0f;
-}
-
-static void try_axis(const bins *b, int axis, split *best)
-{
-    float right_cost[BIN_COUNT];
-    wide_box box = box_empty();
-    uint32_t count = 0;
-    for (int i = BIN_COUNT - 1; i > 0; i--) {
-        box_grow(&box, b->box[i].lo, b->box[i].hi);
-        count += b->count[i];
-        right_cost[i] = count ? box_half_area(&box) * (float)count : 0.0f;
-    }
-    uint32_t total = count + b->count[0];
-    box = box_empty();
-    count = 0;
-    for (int i = 1; i < BIN_COUNT; i++) {
-        box_grow(&box, b->box[i - 1].lo, b->box[i - 1].hi);
-        count += b->count[i - 1];
-        if (count == 0 || count == total)
-            continue;
-        float cost = box_half_area(&box) * (float)count + right_cost[i];
-        if (cost < best->cost)
-            *best = (split){axis, i, cost};
-    }
-}
-
-static split find_split(const item *items, const range *r)
-{
-    split best = {-1, 0, INFINITY};
-    bins b[3];
-    float scale[3], lo[3];
-    for (int a = 0; a < 3; a++) {
-        lo[a] = r->centers.lo[a];
-        scale[a] = bin_scale(r, a);
-        memset(b[a].count, 0, sizeof b[a].count);
-        for (int i = 0; i < BIN_COUNT; i++)
-            b[a].box[i] = box_empty();
-    }
-    for (uint32_t i = r->first; i < r->first + r->count; i++) {
-        const item *it = &items[i];
-        fl_wf center = twice_center(it);
-        for (int a = 0; a < 3; a++) {
-            int bin = bin_of(center, a, lo[a], scale[a]);
-            box_grow(&b[a].box[bin], it->lo, it->hi);
-            b[a].count[bin]++;
-        }
-    }
-    for (int a = 0; a < 3; a++)
-        if (scale[a] > 0.0f)
-            try_axis(&b[a], a, &best);
-    return best;
-}
-
-/* Put items of lower bins first; both sides are measured on the way. */
-static void partition(item *items, const range *r, const split *at, range *out_left,
-                      range *out_right)
-{
-    float scale = bin_scale(r, at->axis), lo = r->centers.lo[at->axis];
-    uint32_t i = r->first, j = r->first + r->count;
-    range left = {r->first, 0, box_empty(), box_empty()}, right = left;
-    while (i < j) {
-        item it = items[i];
-        if (bin_of(twice_center(&it), at->axis, lo, scale) < at->bin) {
-            range_grow(&left, &it);
-            i++;
-        } else {
-            range_grow(&right, &it);
-            items[i] = items[--j];
-            items[j] = it;
-        }
-    }
-    left.count = i - r->first;
-    right.first = i;
-    right.count = r->count - left.count;
-    *out_left = left;
-    *out_right = right;
-}
-
-/* Cut `r` in two. By count when no plane separates the centres, or far down a degenerate tree. */
-static void split_range(item *items, const range *r, uint32_t depth, range *out_left,
-                        range *out_right)
-{
-    split best = {-1, 0, INFINITY};
-    if (depth < SAH_DEPTH_MAX)
-        best = find_split(items, r);
-    if (best.axis >= 0) {
-        partition(items, r, &best, out_left, out_right);
-        return;
-    }
-    uint32_t left = r->count / 2;
-    *out_left = range_of(items, r->first, left);
-    *out_right = range_of(items, r->first + left, r->count - left);
-}
-
-/* --- Growing a tree -------------------------------------------------------------------------- */
-
-static bool reserve(void **array, uint32_t *capacity, uint32_t needed, size_t item_bytes)
-{
+    void *old;
+    memcpy(&old, array, sizeof old);
     if (needed <= *capacity)
         return true;
-    uint32_t grown = *capacity ? *capacity * 2 : 64;
-    void *moved = realloc(*array, grown * item_bytes);
+    uint32_t grown = fl_max_u32(2 * *capacity, fl_max_u32(needed, 64));
+    void *moved = realloc(old, grown * item_bytes);
     if (!moved)
         return false;
-    *array = moved;
+    memcpy(array, &moved, sizeof moved);
     *capacity = grown;
     return true;
 }
 
+/* --- Binary trees ---------------------------------------------------------------------------- */
+
+static uint32_t add_pair(pairs *p, const range *items)
+{
+    if (!reserve(&p->at, &p->capacity, p->count + 1, sizeof *p->at))
+        return FL_NONE;
+    p->at[p->count] = (pair){.box = items->box,
+                             .first = items->first,
+                             .count = items->count,
+                             .left = FL_NONE,
+                             .right = FL_NONE};
+    return p->count++;
+}
+
+/* Split down to leaves; returns the root or FL_NONE. Depth is bounded, so recursion is. */
+static uint32_t grow(const builder *b, pairs *p, const range *items, uint32_t depth)
+{
+    range left, right;
+    uint32_t k = add_pair(p, items);
+    if (k == FL_NONE || items->count <= FL_BVH_WIDTH)
+        return k;
+    fl_bvh_split(b->items, items, b->is_quick, depth >= SAH_DEPTH_MAX, &left, &right);
+    uint32_t l = grow(b, p, &left, depth + 1);
+    uint32_t r = l == FL_NONE ? FL_NONE : grow(b, p, &right, depth + 1);
+    if (r == FL_NONE)
+        return FL_NONE;
+    p->at[k].left = l;
+    p->at[k].right = r;
+    return k;
+}
+
+/* The cheapest forms of a pair from those of its halves. */
+static void fold(const pairs *p, pair *whole)
+{
+    if (whole->left == FL_NONE)
+        return;
+    const float *l = p->at[whole->left].cost, *r = p->at[whole->right].cost;
+    float best = INFINITY;
+    for (uint8_t n = 2; n <= FL_BVH_WIDTH; n++) {
+        for (uint8_t k = 1; k < n; k++)
+            if (l[k] + r[n - k] < best) {
+                best = l[k] + r[n - k];
+                whole->share[n] = k;
+                whole->own_left = k;
+                whole->own_right = (uint8_t)(n - k);
+            }
+        whole->cost[n] = best;
+    }
+    whole->cost[1] = best + box_half_area(&whole->box);
+    for (int n = 2; n <= FL_BVH_WIDTH; n++)
+        if (whole->cost[1] <= whole->cost[n]) {
+            whole->cost[n] = whole->cost[1];
+            whole->share[n] = 0;
+        }
+}
+
+/* --- Nodes of eight -------------------------------------------------------------------------- */
+
 static uint32_t add_node(tree *t)
 {
-    void *nodes = t->nodes;
-    if (!reserve(&nodes, &t->node_capacity, t->node_count + 1, sizeof *t->nodes)) {
-        t->failed = true;
+    if (!reserve(&t->nodes, &t->node_capacity, t->node_count + 1, sizeof *t->nodes))
         return FL_NONE;
-    }
-    t->nodes = nodes;
     fl_bvh_node *node = &t->nodes[t->node_count];
     memset(node, 0, sizeof *node);
     for (int k = 0; k < FL_BVH_WIDTH; k++) {
@@ -250,164 +185,319 @@ static uint32_t add_node(tree *t)
     return t->node_count++;
 }
 
-static uint32_t item_number(const item *it)
+static uint32_t add_leaf(tree *t, const item *items, uint32_t count)
 {
-    return (uint32_t)((fl_wi)it->lo)[3];
-}
-
-static uint32_t add_leaf(tree *t, const item *items, const range *r)
-{
-    void *leaves = t->leaf_items;
-    if (!reserve(&leaves, &t->leaf_capacity, t->leaf_count + 1,
-                 FL_BVH_WIDTH * sizeof *t->leaf_items)) {
-        t->failed = true;
+    if (!reserve(&t->leaf_items, &t->leaf_capacity, t->leaf_count + 1,
+                 FL_BVH_WIDTH * sizeof *t->leaf_items))
         return FL_NONE;
-    }
-    t->leaf_items = leaves;
     uint32_t *out = &t->leaf_items[(size_t)t->leaf_count * FL_BVH_WIDTH];
     for (uint32_t k = 0; k < FL_BVH_WIDTH; k++)
-        out[k] = k < r->count ? item_number(&items[r->first + k]) : FL_NONE;
-    for (uint32_t k = 1; k < r->count; k++)
+        out[k] = k < count ? item_number(&items[k]) : FL_NONE;
+    for (uint32_t k = 1; k < count; k++)
         for (uint32_t j = k; j > 0 && out[j] < out[j - 1]; j--) {
             uint32_t swap = out[j];
             out[j] = out[j - 1];
             out[j - 1] = swap;
         }
-    return FL_BVH_LEAF | (r->count - 1) << 28 | t->leaf_count++;
+    return FL_BVH_LEAF | (count - 1) << 28 | t->leaf_count++;
 }
 
-/* Up to eight ranges: the one with the largest area that is no leaf yet is split, again and again.
- */
-static uint32_t split_to_width(const builder *b, const range *r, uint32_t depth,
-                               range out[FL_BVH_WIDTH])
+static const pair *pair_at(pair_ref r)
 {
-    uint32_t count = 1;
-    out[0] = *r;
-    while (count < FL_BVH_WIDTH) {
-        uint32_t widest = FL_NONE;
-        float widest_area = -1.0f;
-        for (uint32_t k = 0; k < count; k++) {
-            float area = box_half_area(&out[k].box);
-            if (out[k].count > FL_BVH_WIDTH && area > widest_area) {
-                widest = k;
-                widest_area = area;
-            }
+    return &r.in->at[r.k];
+}
+
+/* Pairs as `n` children of a node, in order; returns how many. */
+static uint32_t children_of(const builder *b, pair_ref r, uint32_t n, pair_ref *out)
+{
+    const pair *whole = pair_at(r);
+    if (whole->left == FL_NONE && whole->right != FL_NONE)
+        return children_of(b, b->pieces[whole->right].root, n, out);
+    while (n > 1 && whole->left != FL_NONE && whole->share[n] == 0)
+        n--;
+    if (n == 1 || whole->left == FL_NONE) {
+        *out = r;
+        return 1;
+    }
+    pair_ref left = {r.in, whole->left}, right = {r.in, whole->right};
+    uint32_t count = children_of(b, left, whole->share[n], out);
+    return count + children_of(b, right, n - whole->share[n], out + count);
+}
+
+/* The children of the node that a pair is. */
+static uint32_t own_children(const builder *b, pair_ref r, pair_ref out[FL_BVH_WIDTH])
+{
+    const pair *whole = pair_at(r);
+    if (whole->left == FL_NONE && whole->right != FL_NONE)
+        return own_children(b, b->pieces[whole->right].root, out);
+    if (whole->left == FL_NONE)
+        return children_of(b, r, 1, out);
+    pair_ref left = {r.in, whole->left}, right = {r.in, whole->right};
+    uint32_t count = children_of(b, left, whole->own_left, out);
+    return count + children_of(b, right, whole->own_right, out + count);
+}
+
+/* Note what is not of the top for later. */
+static uint32_t add_branch(builder *b, pair_ref r)
+{
+    if (!reserve(&b->branches, &b->branch_capacity, b->branch_count + 1, sizeof *b->branches))
+        return FL_NONE;
+    b->branches[b->branch_count] = (branch){.root = r};
+    return FL_BVH_LEAF | b->branch_count++;
+}
+
+/* Add the child that a pair becomes to `out`, with all below it; returns its name. In the top, a
+ * branch is named as if it were a leaf. FL_NONE: out of memory. */
+static uint32_t make_child(const builder *b, builder *top, tree *out, pair_ref r)
+{
+    const pair *whole = pair_at(r);
+    if (top && r.in != &top->pairs)
+        return add_branch(top, r);
+    if (whole->left == FL_NONE && !top)
+        return add_leaf(out, &b->items[whole->first], whole->count);
+    uint32_t index = add_node(out);
+    if (index == FL_NONE)
+        return FL_NONE;
+    pair_ref part[FL_BVH_WIDTH];
+    uint32_t count = own_children(b, r, part);
+    for (uint32_t n = 0; n < count; n++) {
+        uint32_t child = make_child(b, top, out, part[n]);
+        if (child == FL_NONE)
+            return FL_NONE;
+        const wide_box *box = &pair_at(part[n])->box;
+        fl_bvh_node *node = &out->nodes[index];
+        node->child[n] = child;
+        node->has_leaf |= child & FL_BVH_LEAF ? 1u : 0u;
+        for (int a = 0; a < 3; a++) {
+            node->plane[2 * a][n] = box->lo[a] - b->pad;
+            node->plane[2 * a + 1][n] = box->hi[a] + b->pad;
         }
-        if (widest == FL_NONE)
-            break;
-        range whole = out[widest];
-        split_range(b->items, &whole, depth, &out[widest], &out[count]);
-        count++;
     }
-    return count;
+    return index;
 }
 
-static void set_child(const builder *b, fl_bvh_node *node, uint32_t k, const wide_box *box,
-                      uint32_t child)
+/* --- Steps ----------------------------------------------------------------------------------- */
+
+static void fill_items(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 {
-    node->child[k] = child;
-    node->has_leaf |= child != FL_NONE && child & FL_BVH_LEAF ? 1u : 0u;
-    for (int a = 0; a < 3; a++) {
-        node->plane[2 * a][k] = box->lo[a] - b->pad;
-        node->plane[2 * a + 1][k] = box->hi[a] + b->pad;
+    const builder *b = context;
+    (void)thread;
+    for (uint32_t i = begin; i < end; i++) {
+        const float *lo = b->boxes[i].lo, *hi = b->boxes[i].hi;
+        fl_wi number = {0, 0, 0, (int32_t)i};
+        fl_wf low = {lo[0], lo[1], lo[2], 0.0f};
+        b->items[i].lo = (fl_wf)((fl_wi)low | number);
+        b->items[i].hi = (fl_wf){hi[0], hi[1], hi[2], 0.0f};
     }
 }
 
-/* Put `r` off to the parallel phase if there is one and it is small enough. */
-static bool put_off(builder *b, tree *t, const range *r, uint32_t node, uint32_t slot,
-                    uint32_t depth)
+static void split_round(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 {
-    if (b->pending_capacity == 0 || r->count > SUBTREE_ITEMS)
+    const builder *b = context;
+    (void)thread;
+    for (uint32_t i = begin; i < end; i++) {
+        waiting *w = &b->round[i];
+        fl_bvh_split(b->items, &w->items, b->is_quick, b->depth >= SAH_DEPTH_MAX, &w->half[0],
+                     &w->half[1]);
+    }
+}
+
+/* A new pair of the top: to be split in the next round, or a piece. */
+static uint32_t add_top(builder *b, const range *items)
+{
+    uint32_t k = add_pair(&b->pairs, items);
+    if (k == FL_NONE)
+        return FL_NONE;
+    if (items->count > PIECE_ITEMS) {
+        b->next[b->next_count++] = (waiting){.items = *items, .pair = k};
+        return k;
+    }
+    if (!reserve(&b->pieces, &b->piece_capacity, b->piece_count + 1, sizeof *b->pieces))
+        return FL_NONE;
+    b->pairs.at[k].right = b->piece_count;
+    b->pieces[b->piece_count++] = (piece){.items = *items, .depth = b->depth};
+    return k;
+}
+
+/* Ranges that wait have no item in common, so there are few at a time. */
+static bool split_top(builder *b, fl_pool *pool)
+{
+    size_t bytes = (b->count / PIECE_ITEMS + 1) * sizeof *b->round;
+    b->round = malloc(bytes);
+    b->next = malloc(bytes);
+    if (!b->round || !b->next)
         return false;
-    if (b->pending_count == b->pending_capacity) {
-        void *moved = realloc(b->pending, 2 * b->pending_capacity * sizeof *b->pending);
-        if (!moved) {
-            t->failed = true;
-            return true;
+    range all = fl_bvh_range(b->items, 0, b->count);
+    if (add_top(b, &all) == FL_NONE)
+        return false;
+    while (b->next_count > 0) {
+        waiting *round = b->next;
+        uint32_t count = b->next_count;
+        b->next = b->round;
+        b->round = round;
+        b->next_count = 0;
+        fl_parallel_for(pool, count, 1, split_round, b);
+        b->depth++;
+        for (uint32_t i = 0; i < count; i++) {
+            uint32_t left = add_top(b, &round[i].half[0]);
+            uint32_t right = left == FL_NONE ? FL_NONE : add_top(b, &round[i].half[1]);
+            if (right == FL_NONE)
+                return false;
+            b->pairs.at[round[i].pair].left = left;
+            b->pairs.at[round[i].pair].right = right;
         }
-        b->pending = moved;
-        b->pending_capacity *= 2;
     }
-    b->pending[b->pending_count++] = (pending){*r, node, slot, depth, {0}};
     return true;
 }
 
-/* Depth is at most SAH_DEPTH_MAX + 12, so recursion is bounded. */
-static uint32_t build_node(builder *b, tree *t, const range *r, uint32_t depth)
+static void split_pieces(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 {
-    uint32_t node = add_node(t);
-    if (node == FL_NONE)
-        return FL_NONE;
-    range part[FL_BVH_WIDTH];
-    uint32_t count = split_to_width(b, r, depth, part);
-    for (uint32_t k = 0; k < count && !t->failed; k++) {
-        uint32_t child = FL_NONE;
-        if (part[k].count <= FL_BVH_WIDTH)
-            child = add_leaf(t, b->items, &part[k]);
-        else if (!put_off(b, t, &part[k], node, k, depth + 1))
-            child = build_node(b, t, &part[k], depth + 1);
-        set_child(b, &t->nodes[node], k, &part[k].box, child);
+    const builder *b = context;
+    workspace *w = &b->workspaces[thread];
+    for (uint32_t i = begin; i < end && !w->failed; i++) {
+        piece *p = &b->pieces[i];
+        p->root.in = &w->pairs;
+        p->root.k = grow(b, &w->pairs, &p->items, p->depth);
+        w->failed = p->root.k == FL_NONE;
+        for (uint32_t k = w->pairs.count; !w->failed && k-- > p->root.k;)
+            fold(&w->pairs, &w->pairs.at[k]);
     }
-    return node;
 }
 
-static void build_pending(void *context, uint32_t begin, uint32_t end, uint32_t thread)
+/* The top in nodes of eight, down to its branches. */
+static bool make_top(builder *b)
 {
-    builder *b = context;
-    (void)thread;
-    for (uint32_t i = begin; i < end; i++) {
-        builder whole = {b->items, b->pad, NULL, 0, 0};
-        build_node(&whole, &b->pending[i].built, &b->pending[i].items, b->pending[i].depth);
+    for (uint32_t k = b->pairs.count; k-- > 0;) {
+        pair *p = &b->pairs.at[k];
+        if (p->left == FL_NONE)
+            memcpy(p->cost, pair_at(b->pieces[p->right].root)->cost, sizeof p->cost);
+        else
+            fold(&b->pairs, p);
+    }
+    return make_child(b, b, &b->top, (pair_ref){&b->pairs, 0}) != FL_NONE;
+}
+
+static void make_branches(void *context, uint32_t begin, uint32_t end, uint32_t thread)
+{
+    const builder *b = context;
+    workspace *w = &b->workspaces[thread];
+    for (uint32_t i = begin; i < end && !w->failed; i++) {
+        branch *r = &b->branches[i];
+        r->thread = thread;
+        r->first_node = w->made.node_count;
+        r->first_leaf = w->made.leaf_count;
+        r->child = make_child(b, NULL, &w->made, r->root);
+        w->failed = r->child == FL_NONE;
+        r->node_count = w->made.node_count - r->first_node;
+        r->leaf_count = w->made.leaf_count - r->first_leaf;
     }
 }
 
 /* --- Putting the parts together -------------------------------------------------------------- */
 
-static void append(fl_bvh *bvh, const tree *t)
+static uint32_t moved_child(const branch *r, uint32_t child)
 {
-    uint32_t node_base = bvh->node_count, leaf_base = bvh->leaf_count;
-    for (uint32_t i = 0; i < t->node_count; i++) {
-        fl_bvh_node *node = &bvh->nodes[node_base + i];
-        *node = t->nodes[i];
-        for (int k = 0; k < FL_BVH_WIDTH; k++)
-            if (node->child[k] != FL_NONE)
-                node->child[k] += node->child[k] & FL_BVH_LEAF ? leaf_base : node_base;
-    }
-    if (t->leaf_count)
-        memcpy(&bvh->items[(size_t)leaf_base * FL_BVH_WIDTH], t->leaf_items,
-               (size_t)t->leaf_count * FL_BVH_WIDTH * sizeof *bvh->items);
-    bvh->node_count += t->node_count;
-    bvh->leaf_count += t->leaf_count;
+    if (child == FL_NONE)
+        return child;
+    return child +
+           (child & FL_BVH_LEAF ? r->leaf_base - r->first_leaf : r->node_base - r->first_node);
 }
 
-static bool assemble(fl_bvh *out, fl_arena *arena, const tree *top, const builder *b)
+static void place_branches(void *context, uint32_t begin, uint32_t end, uint32_t thread)
 {
-    uint32_t node_count = top->node_count, leaf_count = top->leaf_count;
-    bool failed = top->failed;
-    for (uint32_t i = 0; i < b->pending_count; i++) {
-        node_count += b->pending[i].built.node_count;
-        leaf_count += b->pending[i].built.leaf_count;
-        failed |= b->pending[i].built.failed;
+    const builder *b = context;
+    (void)thread;
+    for (uint32_t i = begin; i < end; i++) {
+        const branch *r = &b->branches[i];
+        const tree *from = &b->workspaces[r->thread].made;
+        for (uint32_t n = 0; n < r->node_count; n++) {
+            fl_bvh_node *node = &b->out->nodes[r->node_base + n];
+            *node = from->nodes[r->first_node + n];
+            for (int k = 0; k < FL_BVH_WIDTH; k++)
+                node->child[k] = moved_child(r, node->child[k]);
+        }
+        memcpy(&b->out->items[(size_t)r->leaf_base * FL_BVH_WIDTH],
+               &from->leaf_items[(size_t)r->first_leaf * FL_BVH_WIDTH],
+               (size_t)r->leaf_count * FL_BVH_WIDTH * sizeof *b->out->items);
     }
-    if (failed)
-        return false;
-    out->nodes = fl_arena_alloc(arena, node_count, sizeof *out->nodes);
-    out->items = fl_arena_alloc(arena, leaf_count, FL_BVH_WIDTH * sizeof *out->items);
+}
+
+static void place_top(const builder *b)
+{
+    for (uint32_t n = 0; n < b->top.node_count; n++) {
+        fl_bvh_node *node = &b->out->nodes[n];
+        *node = b->top.nodes[n];
+        node->has_leaf = 0;
+        for (int k = 0; k < FL_BVH_WIDTH; k++) {
+            if (node->child[k] == FL_NONE)
+                continue;
+            if (node->child[k] & FL_BVH_LEAF) {
+                const branch *r = &b->branches[node->child[k] & ~FL_BVH_LEAF];
+                node->child[k] = moved_child(r, r->child);
+            }
+            node->has_leaf |= node->child[k] & FL_BVH_LEAF ? 1u : 0u;
+        }
+    }
+}
+
+/* The nodes of the top come first, then the branches in order. */
+static bool put_together(builder *b, fl_arena *arena, fl_pool *pool)
+{
+    fl_bvh *out = b->out;
+    out->node_count = b->top.node_count;
+    for (uint32_t i = 0; i < b->branch_count; i++) {
+        branch *r = &b->branches[i];
+        r->node_base = out->node_count;
+        r->leaf_base = out->leaf_count;
+        out->node_count += r->node_count;
+        out->leaf_count += r->leaf_count;
+    }
+    out->nodes = fl_arena_alloc(arena, out->node_count, sizeof *out->nodes);
+    out->items = fl_arena_alloc(arena, out->leaf_count, FL_BVH_WIDTH * sizeof *out->items);
     if (!out->nodes || !out->items)
         return false;
-    append(out, top);
-    for (uint32_t i = 0; i < b->pending_count; i++) {
-        const pending *p = &b->pending[i];
-        out->nodes[p->node].child[p->slot] = out->node_count;
-        append(out, &p->built);
-    }
+    place_top(b);
+    fl_parallel_for(pool, b->branch_count, 16, place_branches, b);
     return true;
 }
 
-static void tree_free(tree *t)
+static bool has_failed(const builder *b)
 {
-    free(t->nodes);
-    free(t->leaf_items);
+    for (uint32_t t = 0; t < b->thread_count; t++)
+        if (b->workspaces[t].failed)
+            return true;
+    return false;
+}
+
+static bool build(builder *b, fl_arena *arena, fl_pool *pool)
+{
+    if (!b->items || !b->workspaces)
+        return false;
+    fl_parallel_for(pool, b->count, 65536, fill_items, b);
+    if (!split_top(b, pool))
+        return false;
+    fl_parallel_for(pool, b->piece_count, 1, split_pieces, b);
+    if (has_failed(b) || !make_top(b))
+        return false;
+    fl_parallel_for(pool, b->branch_count, 1, make_branches, b);
+    return !has_failed(b) && put_together(b, arena, pool);
+}
+
+static void builder_deinit(builder *b)
+{
+    for (uint32_t t = 0; b->workspaces && t < b->thread_count; t++) {
+        free(b->workspaces[t].pairs.at);
+        free(b->workspaces[t].made.nodes);
+        free(b->workspaces[t].made.leaf_items);
+    }
+    free(b->workspaces);
+    free(b->branches);
+    free(b->pieces);
+    free(b->next);
+    free(b->round);
+    free(b->top.nodes);
+    free(b->pairs.at);
+    free(b->items);
 }
 
 bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uint32_t count,
@@ -416,30 +506,17 @@ bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uin
     FL_ASSERT(count >= 1);
     if (count > ITEM_COUNT_MAX)
         return false;
-    tree top = {0};
-    builder b = {aligned_alloc(64, (count * sizeof *b.items + 63) / 64 * 64), pad,
-                 malloc(64 * sizeof *b.pending), 0, 64};
-    bool ok = b.items && b.pending;
+    uint32_t threads = fl_pool_thread_count(pool);
     fl_bvh result = {.origin_pad = origin_pad};
-    if (ok) {
-        for (uint32_t i = 0; i < count; i++) {
-            const float *lo = boxes[i].lo, *hi = boxes[i].hi;
-            fl_wi number = {0, 0, 0, (int32_t)i};
-            fl_wf low = {lo[0], lo[1], lo[2], 0.0f};
-            b.items[i].lo = (fl_wf)((fl_wi)low | number);
-            b.items[i].hi = (fl_wf){hi[0], hi[1], hi[2], 0.0f};
-        }
-        range all = range_of(b.items, 0, count);
-        build_node(&b, &top, &all, 0);
-        if (!top.failed)
-            fl_parallel_for(pool, b.pending_count, 1, build_pending, &b);
-        ok = assemble(&result, arena, &top, &b);
-    }
-    for (uint32_t i = 0; i < b.pending_count; i++)
-        tree_free(&b.pending[i].built);
-    tree_free(&top);
-    free(b.pending);
-    free(b.items);
+    builder b = {.items = aligned_alloc(64, (count * sizeof *b.items + 63) / 64 * 64),
+                 .boxes = boxes,
+                 .count = count,
+                 .thread_count = threads,
+                 .pad = pad,
+                 .workspaces = calloc(threads, sizeof *b.workspaces),
+                 .out = &result};
+    bool ok = build(&b, arena, pool);
+    builder_deinit(&b);
     if (ok)
         *out_bvh = result;
     return ok;

@@ -14,7 +14,7 @@
 enum {
     FL_BVH_WIDTH = 8, /**< Children a node, and items a leaf at most. */
     FL_BVH_STACK_MAX =
-        320 /**< Entries that a depth-first walk can need: (width - 1) * depth + 1. */
+        640 /**< Entries that a depth-first walk can need: (width - 1) * depth + 1. */
 };
 
 /* A child is FL_NONE (absent), an inner node's index, or a leaf: flag, items - 1, leaf index. */

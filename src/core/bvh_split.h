@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Layer 3, private to bvh: ranges of boxes, and cutting one in two.
+ */
+#ifndef FL_BVH_SPLIT_H
+#define FL_BVH_SPLIT_H
+
+#include "core/bvh.h"
+
+/* x y z and one lane to spare, whatever the machine: the tree is the same everywhere. */
+#define FL_W 4
+#include "core/wide.h"
+
+/** Corners as vectors; the fourth lane is free. */
+typedef struct wide_box {
+    fl_wf lo, hi;
+} wide_box;
+
+/** What is partitioned: boxes travel with their item, so every pass reads memory in order. */
+typedef struct item {
+    fl_wf lo; /**< Fourth: the item's number, as bits. */
+    fl_wf hi; /**< Fourth: 0. */
+} item;
+
+typedef struct range {
+    uint32_t first, count;
+    wide_box box;
+    wide_box centers; /**< Of lo + hi: twice the centres. */
+} range;
+
+FL_INLINE float box_half_area(const wide_box *box)
+{
+    fl_wf side = box->hi - box->lo;
+    return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
+}
+
+FL_INLINE uint32_t item_number(const item *it)
+{
+    return (uint32_t)((fl_wi)it->lo)[3];
+}
+
+/** Items [first, first + count) with their bounds. */
+range fl_bvh_range(const item *items, uint32_t first, uint32_t count);
+
+/** Cut `r`, of two items or more, in two that are not empty: by the surface area heuristic in
+ * 16 bins [Wald 2007], for is_quick in the middle of the longest axis; by count when no plane
+ * separates the centres, or for is_halved. Reorders the items. O(count). */
+void fl_bvh_split(item *items, const range *r, bool is_quick, bool is_halved, range *out_left,
+                  range *out_right);
+
+#endif
