@@ -23,13 +23,13 @@ static inline void leaf_any(packet *p, uint64_t lanes, const void *context, uint
 static void walk_mesh_nearest(packet *p, const mesh_target *target)
 {
     target->counts->node_visits +=
-        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_nearest, target);
+        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_nearest, target, false);
 }
 
 static void walk_mesh_any(packet *p, const mesh_target *target)
 {
     target->counts->node_visits +=
-        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_any, target);
+        packet_walk(p, target->mesh->bvh, target->mesh->packs, leaf_any, target, true);
 }
 
 static void walk_octree(packet *p, const mesh_target *target, const bool is_any)
@@ -244,7 +244,7 @@ FL_INLINE void walk_objects(const job *j, chunk *c, const bool is_any)
     }
     if (p.lanes)
         j->context->counts.node_visits +=
-            packet_walk(&p, bvh, NULL, is_any ? objects_any : objects_nearest, &walk);
+            packet_walk(&p, bvh, NULL, is_any ? objects_any : objects_nearest, &walk, is_any);
 }
 
 /* --- Whole chunks ---------------------------------------------------------------------------- */

@@ -17,11 +17,13 @@ typedef struct packet {
     uint64_t lanes;          /* Rays that are here. */
     uint64_t down[3];        /* Rays that descend along each axis. */
     uint64_t z_is_1, z_is_2; /* Rays whose kz is 1, 2. */
-    bool has_beam;           /* All go the same way along each axis, and along the same kz. */
+    bool is_alike;           /* All go the same way along each axis, */
+    bool has_beam;           /* and along the same kz. */
     bool has_one_origin, has_source;
     float beam_enter[3], beam_leave[3], beam_least[3], beam_most[3];
     float beam_shear[4]; /* With one origin: least and most along kx, then along ky. */
     _Alignas(64) float enter_o[3][CHUNK_RAYS], leave_o[3][CHUNK_RAYS], inverse[3][CHUNK_RAYS];
+    _Alignas(64) float turned_o[3][CHUNK_RAYS]; /* Along kx, ky, kz. */
     _Alignas(64) float shear_x[CHUNK_RAYS], shear_y[CHUNK_RAYS], inverse_z[CHUNK_RAYS];
 } packet;
 
@@ -30,12 +32,16 @@ FL_INLINE void packet_put(packet *p, uint32_t i, const bundle *b, const slabs *s
 {
     fl_wf x = fl_wf_abs(b->d[0]), y = fl_wf_abs(b->d[1]), z = fl_wf_abs(b->d[2]);
     fl_wm is_2 = (z >= x) & (z >= y), is_1 = ~is_2 & (y >= x);
-    fl_wf d_z = fl_wf_select(is_2, b->d[2], fl_wf_select(is_1, b->d[1], b->d[0]));
-    fl_wf d_x = fl_wf_select(is_2, b->d[0], fl_wf_select(is_1, b->d[2], b->d[1]));
-    fl_wf d_y = fl_wf_select(is_2, b->d[1], fl_wf_select(is_1, b->d[0], b->d[2]));
-    fl_wf_store(p->shear_x + i, d_x / d_z);
-    fl_wf_store(p->shear_y + i, d_y / d_z);
-    fl_wf_store(p->inverse_z + i, 1.0f / d_z);
+    fl_wf d[3];
+    for (int a = 0; a < 3; a++) {
+        int on_0 = a == 2 ? 0 : a + 1, on_1 = on_0 == 2 ? 0 : on_0 + 1; /* For kz 0 and 1. */
+        d[a] = fl_wf_select(is_2, b->d[a], fl_wf_select(is_1, b->d[on_1], b->d[on_0]));
+        fl_wf_store(&p->turned_o[a][i],
+                    fl_wf_select(is_2, b->o[a], fl_wf_select(is_1, b->o[on_1], b->o[on_0])));
+    }
+    fl_wf_store(p->shear_x + i, d[0] / d[2]);
+    fl_wf_store(p->shear_y + i, d[1] / d[2]);
+    fl_wf_store(p->inverse_z + i, 1.0f / d[2]);
     p->z_is_1 |= (uint64_t)fl_wm_bits(is_1) << i;
     p->z_is_2 |= (uint64_t)fl_wm_bits(is_2) << i;
     for (int a = 0; a < 3; a++) {
@@ -51,6 +57,15 @@ FL_INLINE void packet_put(packet *p, uint32_t i, const bundle *b, const slabs *s
 FL_INLINE fl_wm group_of_bits(uint32_t bits)
 {
     return ((fl_wi_iota() * 0 + 1) << fl_wi_iota() & (int32_t)bits) != 0;
+}
+
+/* All rays, here or not, that descend along the same axes as ray i. */
+FL_INLINE uint64_t packet_alike(const packet *p, uint32_t i)
+{
+    uint64_t unlike = 0;
+    for (int a = 0; a < 3; a++)
+        unlike |= p->down[a] ^ (0 - (p->down[a] >> i & 1u));
+    return ~unlike;
 }
 
 FL_INLINE uint32_t group_bits(uint64_t lanes, uint32_t i)
@@ -95,11 +110,12 @@ static bool packet_has_one_origin(const packet *p)
 static inline void packet_find_beam(packet *p)
 {
     uint64_t is_1 = p->z_is_1 & p->lanes, is_2 = p->z_is_2 & p->lanes;
-    p->has_beam = (is_1 == 0 || is_1 == p->lanes) && (is_2 == 0 || is_2 == p->lanes);
+    p->is_alike = true;
     for (int a = 0; a < 3; a++) {
         uint64_t down = p->down[a] & p->lanes;
-        p->has_beam &= down == 0 || down == p->lanes;
+        p->is_alike &= down == 0 || down == p->lanes;
     }
+    p->has_beam = p->is_alike && (is_1 == 0 || is_1 == p->lanes) && (is_2 == 0 || is_2 == p->lanes);
     p->has_one_origin = p->has_beam && packet_has_one_origin(p);
     if (!p->has_beam)
         return;

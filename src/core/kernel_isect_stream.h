@@ -21,7 +21,7 @@
 
 enum {
     PACKET_RAYS_MIN = 4, /* Fewer go alone. */
-    GROUP_RAYS_MIN = 3   /* Fewer rays in a group of eight are tested one by one. */
+    GROUP_RAYS_MIN = 6   /* Fewer rays in a group of eight are tested one by one. */
 };
 
 /* --- Boxes ----------------------------------------------------------------------------------- */
@@ -30,7 +30,7 @@ typedef struct packet_visit {
     uint64_t lanes;
     uint32_t child;
     uint32_t box; /* Of the child, for an exact test: node * 8 + place; FL_NONE: was tested. */
-    float near;   /* No ray is nearer. */
+    float near;   /* No ray is nearer. 0 for any hit, which takes them as they come. */
 } packet_visit;
 
 /* Children of `node` that any ray may meet, as bits. */
@@ -92,36 +92,44 @@ static inline uint64_t groups_beyond(const packet *p, uint64_t lanes, float near
 }
 
 /* Rays [first, first + 32) of `lanes`, one by one: bits of those that may meet each child are added
- * to out_lanes, the least distances lowered to theirs. */
+ * to out_lanes, the least distances lowered to theirs (which any hit does without). Those that go
+ * the same way find the planes in registers. */
 FL_INLINE void rays_meet_node(const packet *p, uint32_t lanes, uint32_t first,
-                              const fl_bvh_node *node, uint32_t out_lanes[8], float out_near[8])
+                              const fl_bvh_node *node, uint32_t out_lanes[8], float out_near[8],
+                              const bool is_any)
 {
-    fl_wu met[8 / FL_W < 1 ? 1 : 8 / FL_W];
-    fl_wf least[8 / FL_W];
-    for (int h = 0; h < 8 / FL_W; h++) {
-        met[h] = fl_wu_set(0);
-        least[h] = fl_wf_load(out_near + h * FL_W);
-    }
-    for (; lanes; lanes &= lanes - 1) {
-        uint32_t k = (uint32_t)__builtin_ctz(lanes), i = first + k;
-        for (int h = 0; h < 8 / FL_W; h++) {
-            fl_wf near = fl_wf_set(0.0f), far = fl_wf_set(p->t[i]);
+    while (lanes) {
+        uint32_t same = lanes, one = first + (uint32_t)__builtin_ctz(lanes);
+        if (!p->is_alike)
+            same &= (uint32_t)(packet_alike(p, one) >> first);
+        lanes &= ~same;
+        size_t down[3];
+        for (int a = 0; a < 3; a++)
+            down[a] = p->down[a] >> one & 1u;
+        for (int h = 0; h < 8; h += FL_W) {
+            fl_wf enter[3], leave[3], least = fl_wf_load(out_near + h);
+            fl_wu met = fl_wu_load(out_lanes + h);
             for (int a = 0; a < 3; a++) {
-                size_t down = p->down[a] >> i & 1u;
-                const float *planes = node->plane[2 * a] + h * FL_W;
-                fl_wf enter = fl_wf_load(planes + 8 * down) - p->enter_o[a][i];
-                fl_wf leave = fl_wf_load(planes + 8 - 8 * down) - p->leave_o[a][i];
-                near = fl_wf_max(enter * p->inverse[a][i], near);
-                far = fl_wf_min(leave * p->inverse[a][i], far);
+                enter[a] = fl_wf_load(node->plane[2 * a] + h + 8 * down[a]);
+                leave[a] = fl_wf_load(node->plane[2 * a] + h + 8 - 8 * down[a]);
             }
-            fl_wm meets = near <= far;
-            met[h] |= (fl_wu)meets & fl_wu_set(1u << k);
-            least[h] = fl_wf_min(fl_wf_select(meets, near, least[h]), least[h]);
+            for (uint32_t left = same; left; left &= left - 1) {
+                uint32_t k = (uint32_t)__builtin_ctz(left), i = first + k;
+                fl_wf near = fl_wf_set(0.0f), far = fl_wf_set(p->t[i]);
+                for (int a = 0; a < 3; a++) {
+                    fl_wf inverse = fl_wf_set(p->inverse[a][i]);
+                    near = fl_wf_max((enter[a] - p->enter_o[a][i]) * inverse, near);
+                    far = fl_wf_min((leave[a] - p->leave_o[a][i]) * inverse, far);
+                }
+                fl_wm meets = near <= far;
+                met |= (fl_wu)meets & fl_wu_set(1u << k);
+                if (!is_any)
+                    least = fl_wf_min(fl_wf_select(meets, near, least), least);
+            }
+            fl_wu_store(out_lanes + h, met);
+            if (!is_any)
+                fl_wf_store(out_near + h, least);
         }
-    }
-    for (int h = 0; h < 8 / FL_W; h++) {
-        fl_wu_store(out_lanes + h * FL_W, met[h]);
-        fl_wf_store(out_near + h * FL_W, least[h]);
     }
 }
 
@@ -152,14 +160,14 @@ FL_INLINE uint32_t packet_push(packet_visit *stack, uint32_t base, uint32_t heig
 
 FL_INLINE uint32_t packet_push_beam(const packet *p, uint64_t lanes, uint32_t index,
                                     const fl_bvh *bvh, const fl_tri_pack *packs,
-                                    packet_visit *stack, uint32_t height)
+                                    packet_visit *stack, uint32_t height, const bool is_any)
 {
     const fl_bvh_node *node = &bvh->nodes[index];
     _Alignas(32) float near[8];
     uint32_t base = height;
     for (uint32_t bits = beam_meet_node(p, node, near); bits; bits &= bits - 1) {
         uint32_t k = (uint32_t)__builtin_ctz(bits);
-        packet_visit v = {lanes, node->child[k], index * 8 + k, near[k]};
+        packet_visit v = {lanes, node->child[k], index * 8 + k, is_any ? 0.0f : near[k]};
         packet_fetch(bvh, packs, v.child);
         height = packet_push(stack, base, height, v);
     }
@@ -168,18 +176,18 @@ FL_INLINE uint32_t packet_push_beam(const packet *p, uint64_t lanes, uint32_t in
 
 FL_INLINE uint32_t packet_push_rays(const packet *p, uint64_t lanes, uint32_t index,
                                     const fl_bvh *bvh, const fl_tri_pack *packs,
-                                    packet_visit *stack, uint32_t height)
+                                    packet_visit *stack, uint32_t height, const bool is_any)
 {
     const fl_bvh_node *node = &bvh->nodes[index];
     _Alignas(32) float near[8];
     _Alignas(32) uint32_t met[2][8] = {{0}, {0}};
     uint32_t base = height;
     for (int k = 0; k < 8; k++)
-        near[k] = INFINITY;
+        near[k] = is_any ? 0.0f : INFINITY;
     if ((uint32_t)lanes)
-        rays_meet_node(p, (uint32_t)lanes, 0, node, met[0], near);
+        rays_meet_node(p, (uint32_t)lanes, 0, node, met[0], near, is_any);
     if ((uint32_t)(lanes >> 32))
-        rays_meet_node(p, (uint32_t)(lanes >> 32), 32, node, met[1], near);
+        rays_meet_node(p, (uint32_t)(lanes >> 32), 32, node, met[1], near, is_any);
     for (uint32_t k = 0; k < 8; k++) {
         uint64_t both = met[0][k] | (uint64_t)met[1][k] << 32;
         if (!both)
@@ -206,7 +214,7 @@ typedef void packet_leaf(packet *p, uint64_t lanes, const void *context, uint32_
 
 /* Returns the number of node visits by rays. `leaf` is known where this is inlined. */
 FL_INLINE uint64_t packet_walk(packet *p, const fl_bvh *bvh, const fl_tri_pack *packs,
-                               packet_leaf *leaf, const void *context)
+                               packet_leaf *leaf, const void *context, const bool is_any)
 {
     packet_visit stack[FL_BVH_STACK_MAX];
     uint32_t height = 0;
@@ -233,9 +241,9 @@ FL_INLINE uint64_t packet_walk(packet *p, const fl_bvh *bvh, const fl_tri_pack *
         uint32_t count = (uint32_t)__builtin_popcountll(v.lanes);
         node_visits += count;
         if (p->has_beam && FL_W > 1 && count >= GROUP_RAYS_MIN * group_count(v.lanes))
-            height = packet_push_beam(p, v.lanes, v.child, bvh, packs, stack, height);
+            height = packet_push_beam(p, v.lanes, v.child, bvh, packs, stack, height, is_any);
         else
-            height = packet_push_rays(p, v.lanes, v.child, bvh, packs, stack, height);
+            height = packet_push_rays(p, v.lanes, v.child, bvh, packs, stack, height, is_any);
     }
     return node_visits;
 }
