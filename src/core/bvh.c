@@ -80,10 +80,8 @@ typedef struct branch {
 
 typedef struct builder {
     item *items;
-    const fl_bvh_box *boxes;
-    uint32_t count, thread_count;
-    float pad;
-    bool is_quick;
+    const fl_bvh_input *in;
+    uint32_t thread_count;
     /* The top. Pairs that are not split are pieces: `right` is the piece's number. */
     pairs pairs;
     tree top;
@@ -132,7 +130,7 @@ static uint32_t grow(const builder *b, pairs *p, const range *items, uint32_t de
     uint32_t k = add_pair(p, items);
     if (k == FL_NONE || items->count <= FL_BVH_WIDTH)
         return k;
-    fl_bvh_split(b->items, items, b->is_quick, depth >= SAH_DEPTH_MAX, &left, &right);
+    fl_bvh_split(b->items, items, b->in->are_packed, depth >= SAH_DEPTH_MAX, &left, &right);
     uint32_t l = grow(b, p, &left, depth + 1);
     uint32_t r = l == FL_NONE ? FL_NONE : grow(b, p, &right, depth + 1);
     if (r == FL_NONE)
@@ -269,8 +267,8 @@ static uint32_t make_child(const builder *b, builder *top, tree *out, pair_ref r
         node->child[n] = child;
         node->has_leaf |= child & FL_BVH_LEAF ? 1u : 0u;
         for (int a = 0; a < 3; a++) {
-            node->plane[2 * a][n] = box->lo[a] - b->pad;
-            node->plane[2 * a + 1][n] = box->hi[a] + b->pad;
+            node->plane[2 * a][n] = box->lo[a] - b->in->pad;
+            node->plane[2 * a + 1][n] = box->hi[a] + b->in->pad;
         }
     }
     return index;
@@ -283,7 +281,7 @@ static void fill_items(void *context, uint32_t begin, uint32_t end, uint32_t thr
     const builder *b = context;
     (void)thread;
     for (uint32_t i = begin; i < end; i++) {
-        const float *lo = b->boxes[i].lo, *hi = b->boxes[i].hi;
+        const float *lo = b->in->boxes[i].lo, *hi = b->in->boxes[i].hi;
         fl_wi number = {0, 0, 0, (int32_t)i};
         fl_wf low = {lo[0], lo[1], lo[2], 0.0f};
         b->items[i].lo = (fl_wf)((fl_wi)low | number);
@@ -297,7 +295,7 @@ static void split_round(void *context, uint32_t begin, uint32_t end, uint32_t th
     (void)thread;
     for (uint32_t i = begin; i < end; i++) {
         waiting *w = &b->round[i];
-        fl_bvh_split(b->items, &w->items, b->is_quick, b->depth >= SAH_DEPTH_MAX, &w->half[0],
+        fl_bvh_split(b->items, &w->items, b->in->are_packed, b->depth >= SAH_DEPTH_MAX, &w->half[0],
                      &w->half[1]);
     }
 }
@@ -322,12 +320,12 @@ static uint32_t add_top(builder *b, const range *items)
 /* Ranges that wait have no item in common, so there are few at a time. */
 static bool split_top(builder *b, fl_pool *pool)
 {
-    size_t bytes = (b->count / PIECE_ITEMS + 1) * sizeof *b->round;
+    size_t bytes = (b->in->count / PIECE_ITEMS + 1) * sizeof *b->round;
     b->round = malloc(bytes);
     b->next = malloc(bytes);
     if (!b->round || !b->next)
         return false;
-    range all = fl_bvh_range(b->items, 0, b->count);
+    range all = fl_bvh_range(b->items, 0, b->in->count);
     if (add_top(b, &all) == FL_NONE)
         return false;
     while (b->next_count > 0) {
@@ -441,7 +439,7 @@ static void place_top(const builder *b)
 }
 
 /* The nodes of the top come first, then the branches in order. */
-static bool put_together(builder *b, fl_arena *arena, fl_pool *pool)
+static bool put_together(builder *b, fl_arena *arena, fl_arena *item_arena, fl_pool *pool)
 {
     fl_bvh *out = b->out;
     out->node_count = b->top.node_count;
@@ -453,7 +451,7 @@ static bool put_together(builder *b, fl_arena *arena, fl_pool *pool)
         out->leaf_count += r->leaf_count;
     }
     out->nodes = fl_arena_alloc(arena, out->node_count, sizeof *out->nodes);
-    out->items = fl_arena_alloc(arena, out->leaf_count, FL_BVH_WIDTH * sizeof *out->items);
+    out->items = fl_arena_alloc(item_arena, out->leaf_count, FL_BVH_WIDTH * sizeof *out->items);
     if (!out->nodes || !out->items)
         return false;
     place_top(b);
@@ -469,18 +467,18 @@ static bool has_failed(const builder *b)
     return false;
 }
 
-static bool build(builder *b, fl_arena *arena, fl_pool *pool)
+static bool build(builder *b, fl_arena *arena, fl_arena *item_arena, fl_pool *pool)
 {
     if (!b->items || !b->workspaces)
         return false;
-    fl_parallel_for(pool, b->count, 65536, fill_items, b);
+    fl_parallel_for(pool, b->in->count, 65536, fill_items, b);
     if (!split_top(b, pool))
         return false;
     fl_parallel_for(pool, b->piece_count, 1, split_pieces, b);
     if (has_failed(b) || !make_top(b))
         return false;
     fl_parallel_for(pool, b->branch_count, 1, make_branches, b);
-    return !has_failed(b) && put_together(b, arena, pool);
+    return !has_failed(b) && put_together(b, arena, item_arena, pool);
 }
 
 static void builder_deinit(builder *b)
@@ -500,22 +498,20 @@ static void builder_deinit(builder *b)
     free(b->items);
 }
 
-bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uint32_t count,
-                  float pad, float origin_pad, fl_pool *pool)
+bool fl_bvh_build(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena, fl_arena *item_arena,
+                  fl_pool *pool)
 {
+    uint32_t count = input->count, threads = fl_pool_thread_count(pool);
     FL_ASSERT(count >= 1);
     if (count > ITEM_COUNT_MAX)
         return false;
-    uint32_t threads = fl_pool_thread_count(pool);
-    fl_bvh result = {.origin_pad = origin_pad};
+    fl_bvh result = {.origin_pad = input->origin_pad};
     builder b = {.items = aligned_alloc(64, (count * sizeof *b.items + 63) / 64 * 64),
-                 .boxes = boxes,
-                 .count = count,
+                 .in = input,
                  .thread_count = threads,
-                 .pad = pad,
                  .workspaces = calloc(threads, sizeof *b.workspaces),
                  .out = &result};
-    bool ok = build(&b, arena, pool);
+    bool ok = build(&b, arena, item_arena, pool);
     builder_deinit(&b);
     if (ok)
         *out_bvh = result;

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Layer 3: bounding volume hierarchy with eight children a node, over any boxes. Built by the
- * surface area heuristic with 16 bins [Wald 2007], straight to eight children: the child with the
- * largest area is split until there are eight. The tree depends on the boxes alone, never on the
- * thread count.
+ * Layer 3: bounding volume hierarchy with eight children a node, over any boxes: a binary tree by
+ * the surface area heuristic [Wald 2007], folded into nodes of eight whose area in all is least.
+ * The tree depends on the boxes alone, never on the thread count.
  */
 #ifndef FL_BVH_H
 #define FL_BVH_H
@@ -46,10 +45,18 @@ typedef struct fl_bvh_box {
     float lo[3], hi[3];
 } fl_bvh_box;
 
-/** Build over boxes[0 .. count), count >= 1. Every box is widened by `pad` on all sides as it is
- * stored, `origin_pad` is passed on. Memory comes from `arena`. False: out of memory, or more than
+/** What a hierarchy is built from. */
+typedef struct fl_bvh_input {
+    const fl_bvh_box *boxes;
+    uint32_t count;   /**< >= 1. */
+    float pad;        /**< Every box is widened by this on all sides as it is stored. */
+    float origin_pad; /**< Passed on. */
+    bool are_packed;  /**< A ray tests the items of a leaf all at once, rather than one by one. */
+} fl_bvh_input;
+
+/** Build; nodes come from `arena`, items from `item_arena`. False: out of memory, or more than
  * 2^28 boxes. O(n log n). */
-bool fl_bvh_build(fl_bvh *out_bvh, fl_arena *arena, const fl_bvh_box *boxes, uint32_t count,
-                  float pad, float origin_pad, fl_pool *pool);
+bool fl_bvh_build(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena, fl_arena *item_arena,
+                  fl_pool *pool);
 
 #endif

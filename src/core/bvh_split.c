@@ -64,15 +64,15 @@ static float bin_scale(const range *r, int axis)
     return extent > 0.0f && scale < 1e30f ? scale : 0.0f;
 }
 
-/* What a box with so many items costs: a single ray tests eight at a time, rays together test one
- * after the other. */
-static inline float side_cost(const wide_box *box, uint32_t count)
+/* What a box with so many items costs. Of packed ones a single ray tests eight at a time, but rays
+ * that stay together test one after the other. */
+static inline float side_cost(const wide_box *box, uint32_t count, bool are_packed)
 {
-    uint32_t packs = (count + FL_BVH_WIDTH - 1) / FL_BVH_WIDTH;
+    uint32_t packs = are_packed ? (count + FL_BVH_WIDTH - 1) / FL_BVH_WIDTH : 0;
     return box_half_area(box) * (float)(FL_BVH_WIDTH * packs + count);
 }
 
-static void try_axis(const bins *b, int axis, split *best)
+static void try_axis(const bins *b, int axis, bool are_packed, split *best)
 {
     float right_cost[BIN_COUNT];
     wide_box box = box_empty();
@@ -80,7 +80,7 @@ static void try_axis(const bins *b, int axis, split *best)
     for (int i = BIN_COUNT - 1; i > 0; i--) {
         box_grow(&box, b->box[i].lo, b->box[i].hi);
         count += b->count[i];
-        right_cost[i] = count ? side_cost(&box, count) : 0.0f;
+        right_cost[i] = count ? side_cost(&box, count, are_packed) : 0.0f;
     }
     uint32_t total = count + b->count[0];
     box = box_empty();
@@ -90,13 +90,13 @@ static void try_axis(const bins *b, int axis, split *best)
         count += b->count[i - 1];
         if (count == 0 || count == total)
             continue;
-        float cost = side_cost(&box, count) + right_cost[i];
+        float cost = side_cost(&box, count, are_packed) + right_cost[i];
         if (cost < best->cost)
             *best = (split){axis, i, cost};
     }
 }
 
-static split find_split(const item *items, const range *r)
+static split find_split(const item *items, const range *r, bool are_packed)
 {
     split best = {-1, 0, INFINITY};
     bins b[3];
@@ -119,18 +119,8 @@ static split find_split(const item *items, const range *r)
     }
     for (int a = 0; a < 3; a++)
         if (scale[a] > 0.0f)
-            try_axis(&b[a], a, &best);
+            try_axis(&b[a], a, are_packed, &best);
     return best;
-}
-
-/* The middle of the longest axis. Neither side is empty: the first bin and the last hold an item.
- */
-static split find_middle(const range *r)
-{
-    fl_wf extent = r->centers.hi - r->centers.lo;
-    int axis = extent[1] > extent[0] ? 1 : 0;
-    axis = extent[2] > extent[axis] ? 2 : axis;
-    return (split){bin_scale(r, axis) > 0.0f ? axis : -1, BIN_COUNT / 2, 0.0f};
 }
 
 /* Put items of lower bins first; both sides are measured on the way. */
@@ -158,12 +148,12 @@ static void partition(item *items, const range *r, const split *at, range *out_l
     *out_right = right;
 }
 
-void fl_bvh_split(item *items, const range *r, bool is_quick, bool is_halved, range *out_left,
+void fl_bvh_split(item *items, const range *r, bool are_packed, bool is_halved, range *out_left,
                   range *out_right)
 {
     split best = {-1, 0, INFINITY};
     if (!is_halved)
-        best = is_quick ? find_middle(r) : find_split(items, r);
+        best = find_split(items, r, are_packed);
     if (best.axis >= 0) {
         partition(items, r, &best, out_left, out_right);
         return;

@@ -43,9 +43,9 @@ FL_INLINE uint32_t item_number(const item *it)
 range fl_bvh_range(const item *items, uint32_t first, uint32_t count);
 
 /** Cut `r`, of two items or more, in two that are not empty: by the surface area heuristic in
- * 16 bins [Wald 2007], for is_quick in the middle of the longest axis; by count when no plane
- * separates the centres, or for is_halved. Reorders the items. O(count). */
-void fl_bvh_split(item *items, const range *r, bool is_quick, bool is_halved, range *out_left,
+ * 16 bins; by count when no plane separates the centres, or for is_halved. Reorders the items.
+ * are_packed: as in fl_bvh_input. O(count). */
+void fl_bvh_split(item *items, const range *r, bool are_packed, bool is_halved, range *out_left,
                   range *out_right);
 
 #endif

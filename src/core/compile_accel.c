@@ -50,6 +50,19 @@ static fl_bvh_box face_box(const fl_tri_mesh *mesh, uint32_t face)
     return box;
 }
 
+typedef struct face_boxes {
+    const fl_tri_mesh *mesh;
+    fl_bvh_box *boxes;
+} face_boxes;
+
+static void fill_face_boxes(void *context, uint32_t begin, uint32_t end, uint32_t thread)
+{
+    const face_boxes *f = context;
+    (void)thread;
+    for (uint32_t k = begin; k < end; k++)
+        f->boxes[k] = face_box(f->mesh, k);
+}
+
 static float largest_coordinate(const fl_tri_mesh *mesh)
 {
     float largest = 0.0f;
@@ -81,18 +94,26 @@ static bool allocate_packs(fl_compiler *c, fl_tri_mesh *mesh, uint32_t count)
     return mesh->packs != NULL;
 }
 
+/* Packs name their faces, so the hierarchy's own list of them goes. */
 static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
 {
+    const fl_bvh_input input = {.boxes = boxes,
+                                .count = mesh->face_count,
+                                .pad = FL_BOX_PAD * largest,
+                                .origin_pad = FL_ORIGIN_PAD,
+                                .are_packed = true};
+    fl_arena item_arena = {0};
     mesh->bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *mesh->bvh);
-    if (!mesh->bvh ||
-        !fl_bvh_build(mesh->bvh, &c->out->arena, boxes, mesh->face_count, FL_BOX_PAD * largest,
-                      FL_ORIGIN_PAD, c->pool) ||
-        !allocate_packs(c, mesh, mesh->bvh->leaf_count))
-        return false;
-    fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);
-    c->out->accel_bytes += mesh->bvh->node_count * sizeof *mesh->bvh->nodes +
-                           mesh->bvh->leaf_count * FL_BVH_WIDTH * sizeof *mesh->bvh->items;
-    return true;
+    bool ok = mesh->bvh &&
+              fl_bvh_build(mesh->bvh, &input, &c->out->arena, &item_arena, c->pool) &&
+              allocate_packs(c, mesh, mesh->bvh->leaf_count);
+    if (ok) {
+        fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);
+        c->out->accel_bytes += mesh->bvh->node_count * sizeof *mesh->bvh->nodes;
+        mesh->bvh->items = NULL;
+    }
+    fl_arena_deinit(&item_arena);
+    return ok;
 }
 
 static bool accel_octree(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes, float largest)
@@ -122,8 +143,9 @@ bool fl_compile_accel(fl_compiler *c, fl_tri_mesh *mesh)
     fl_arena scratch = {0};
     fl_bvh_box *boxes = fl_arena_alloc(&scratch, mesh->face_count, sizeof *boxes);
     bool ok = boxes != NULL;
-    for (uint32_t f = 0; ok && f < mesh->face_count; f++)
-        boxes[f] = face_box(mesh, f);
+    if (ok)
+        fl_parallel_for(c->pool, mesh->face_count, 16384, fill_face_boxes,
+                        &(face_boxes){mesh, boxes});
     if (ok && c->options->accel == FL_ACCEL_BVH) {
         ok = accel_bvh(c, mesh, boxes, largest);
     } else if (ok && c->options->accel == FL_ACCEL_OCTREE) {
@@ -258,8 +280,10 @@ static bool build_object_bvh(fl_compiler *c)
         boxes[k] = b.box;
         gain = fl_max(b.gain, gain);
     }
-    ok = ok && fl_bvh_build(g->object_bvh, &c->out->arena, boxes, g->bounded_entry_count, 0.0f,
-                            (float)(entry_roundings * FL_EPSILON * gain), c->pool);
+    const fl_bvh_input input = {.boxes = boxes,
+                                .count = g->bounded_entry_count,
+                                .origin_pad = (float)(entry_roundings * FL_EPSILON * gain)};
+    ok = ok && fl_bvh_build(g->object_bvh, &input, &c->out->arena, &c->out->arena, c->pool);
     fl_arena_deinit(&scratch);
     if (!ok || !gather_entries(c))
         return fl_out_of_memory(c->diags, "the hierarchy of objects");

@@ -99,7 +99,7 @@ typedef struct fl_tri_mesh {
     float box_lo[3], box_hi[3]; /**< Relative to origin. */
     fl_tri_pack *packs; /**< BVH: one a leaf. Octree: those of each leaf in turn. None: all faces in order. */
     uint32_t pack_count;
-    fl_bvh *bvh;       /**< With FL_ACCEL_BVH, else NULL. */
+    fl_bvh *bvh;       /**< With FL_ACCEL_BVH, else NULL. Leaves are packs; `items` is NULL. */
     fl_octree *octree; /**< With FL_ACCEL_OCTREE, else NULL. */
 } fl_tri_mesh;
 

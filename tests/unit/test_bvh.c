@@ -94,6 +94,13 @@ static uint32_t check_tree(const fl_bvh *bvh, const fl_bvh_box *boxes, uint32_t 
     return c.depth;
 }
 
+static bool build(fl_bvh *out, fl_arena *arena, const fl_bvh_box *boxes, uint32_t count, float pad,
+                  bool are_packed, fl_pool *pool)
+{
+    const fl_bvh_input input = {boxes, count, pad, 0.5f, are_packed};
+    return fl_bvh_build(out, &input, arena, arena, pool);
+}
+
 static void every_box_is_held_once(void **state)
 {
     static const uint32_t counts[] = {1, 2, 7, 8, 9, 64, 65, 1000, 20000};
@@ -102,9 +109,11 @@ static void every_box_is_held_once(void **state)
         fl_bvh_box *boxes = random_boxes(counts[k], 7 + k, 0.05f);
         fl_arena arena = {0};
         fl_bvh bvh;
-        assert_true(fl_bvh_build(&bvh, &arena, boxes, counts[k], 0.01f, 0.5f, NULL));
+        assert_true(build(&bvh, &arena, boxes, counts[k], 0.01f, k % 2 == 0, NULL));
         assert_true(bvh.origin_pad == 0.5f);
         check_tree(&bvh, boxes, counts[k], 0.01f);
+        if (counts[k] >= 1000) /* Nodes are well filled. */
+            assert_true(bvh.node_count - 1 + bvh.leaf_count >= 5 * bvh.node_count);
         fl_arena_deinit(&arena);
         free(boxes);
     }
@@ -121,7 +130,7 @@ static void threads_do_not_change_the_tree(void **state)
         fl_diags diags = {0};
         fl_pool *pool = fl_pool_create(k + 1, &diags);
         assert_non_null(pool);
-        assert_true(fl_bvh_build(&trees[k], &arenas[k], boxes, COUNT, 0.0f, 0.0f, pool));
+        assert_true(build(&trees[k], &arenas[k], boxes, COUNT, 0.0f, true, pool));
         fl_pool_destroy(pool);
         assert_int_equal(trees[k].node_count, trees[0].node_count);
         assert_int_equal(trees[k].leaf_count, trees[0].leaf_count);
@@ -154,7 +163,7 @@ static void degenerate_boxes_stay_shallow(void **state)
         }
         fl_arena arena = {0};
         fl_bvh bvh;
-        assert_true(fl_bvh_build(&bvh, &arena, boxes, COUNT, 0.0f, 0.0f, NULL));
+        assert_true(build(&bvh, &arena, boxes, COUNT, 0.0f, true, NULL));
         uint32_t depth = check_tree(&bvh, boxes, COUNT, 0.0f);
         assert_true((FL_BVH_WIDTH - 1) * depth + 1 <= FL_BVH_STACK_MAX);
         fl_arena_deinit(&arena);
