@@ -42,7 +42,7 @@ static void walk_octree(packet *p, const mesh_target *target, const bool is_any)
 
 static void packet_begin(packet *p, const chunk *c)
 {
-    p->lanes = p->z_is_1 = p->z_is_2 = p->down[0] = p->down[1] = p->down[2] = 0;
+    p->blocked = p->lanes = p->z_is_1 = p->z_is_2 = p->down[0] = p->down[1] = p->down[2] = 0;
     p->has_source = false;
     p->t = c->t;
     p->object = c->object;
@@ -220,8 +220,8 @@ static inline void objects_nearest(packet *p, uint64_t lanes, const void *contex
 
 static inline void objects_any(packet *p, uint64_t lanes, const void *context, uint32_t child)
 {
-    (void)p;
     meet_leaf_entries(lanes, context, child, true);
+    p->blocked |= lanes & ~groups_beyond(p, lanes, 0.0f);
 }
 
 FL_INLINE void walk_objects(const job *j, chunk *c, const bool is_any)

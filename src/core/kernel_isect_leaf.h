@@ -57,6 +57,7 @@ FL_INLINE void group_accept(packet *p, uint32_t i, const mesh_target *target, ui
     fl_wm closer = hit & (t < best);
     if (is_any) {
         fl_wf_store(p->t + i, fl_wf_select(closer, fl_wf_set(-1.0f), best));
+        p->blocked |= (uint64_t)fl_wm_bits(closer) << i;
         return;
     }
     fl_wu old_object = fl_wu_load(p->object + i), old_prim = fl_wu_load(p->prim + i);
@@ -170,6 +171,7 @@ FL_INLINE void packet_accept(packet *p, uint32_t i, const mesh_target *target, f
         return;
     if (is_any) {
         p->t[i] = -1.0f;
+        p->blocked |= (uint64_t)1 << i;
     } else if (t < p->t[i] || object < p->object[i] ||
                (object == p->object[i] && prim < p->prim[i])) {
         p->t[i] = t;
@@ -187,6 +189,8 @@ static __attribute__((noinline)) void packet_meet_pack_doubtful(packet *p, uint3
     needle n = packet_needle(p, i);
     needle_meet_pack(&n, target, pack, is_any);
     packet_take(p, i, &n);
+    if (is_any && n.t < 0.0f)
+        p->blocked |= (uint64_t)1 << i;
 }
 
 /* Ray i against the eight triangles, corners along axes `k`: most of the time none is near. */
@@ -251,7 +255,9 @@ static inline void packet_meet_pack(packet *p, uint64_t lanes, const mesh_target
             return;
     }
     uint64_t alone = lanes;
-    for (uint64_t left = p->has_beam && FL_W > 1 ? lanes : 0; left;) {
+    bool may_group = p->has_beam && FL_W > 1 &&
+                     (uint32_t)__builtin_popcountll(lanes) * GROUP_GAIN * (8 / FL_W) > 2 * count;
+    for (uint64_t left = may_group ? lanes : 0; left;) {
         uint32_t first = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
         uint32_t bits = group_bits(left, first);
         left &= ~((uint64_t)FL_W_ALL << first);

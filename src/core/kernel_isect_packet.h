@@ -15,6 +15,7 @@ typedef struct packet {
     uint32_t *object, *prim;
     const uint32_t *source_object, *source_prim;
     uint64_t lanes;          /* Rays that are here. */
+    uint64_t blocked;        /* Any hit: rays whose search is over. */
     uint64_t down[3];        /* Rays that descend along each axis. */
     uint64_t z_is_1, z_is_2; /* Rays whose kz is 1, 2. */
     bool is_alike;           /* All go the same way along each axis, */

@@ -144,7 +144,7 @@ FL_INLINE void packet_fetch(const fl_bvh *bvh, const fl_tri_pack *packs, uint32_
         first = (const char *)&packs[FL_BVH_LEAF_INDEX(child)];
     else
         return;
-    for (int line = 0; line < 4; line++)
+    for (int line = 0; line < (child & FL_BVH_LEAF ? 5 : 4); line++)
         __builtin_prefetch(first + 64 * line);
 }
 
@@ -188,10 +188,12 @@ FL_INLINE uint32_t packet_push_rays(const packet *p, uint64_t lanes, uint32_t in
         rays_meet_node(p, (uint32_t)lanes, 0, node, met[0], near, is_any);
     if ((uint32_t)(lanes >> 32))
         rays_meet_node(p, (uint32_t)(lanes >> 32), 32, node, met[1], near, is_any);
-    for (uint32_t k = 0; k < 8; k++) {
+    uint32_t bits = 0;
+    for (int h = 0; h < 8; h += FL_W)
+        bits |= fl_wm_bits((fl_wm)((fl_wu_load(met[0] + h) | fl_wu_load(met[1] + h)) != 0)) << h;
+    for (; bits; bits &= bits - 1) {
+        uint32_t k = (uint32_t)__builtin_ctz(bits);
         uint64_t both = met[0][k] | (uint64_t)met[1][k] << 32;
-        if (!both)
-            continue;
         packet_fetch(bvh, packs, node->child[k]);
         height = packet_push(stack, base, height,
                              (packet_visit){both, node->child[k], FL_NONE, near[k]});
@@ -209,7 +211,7 @@ static inline uint32_t group_count(uint64_t lanes)
     return count;
 }
 
-/* What is done with the rays that come to a leaf. */
+/* What is done with the rays that come to a leaf. For any hit it adds to packet.blocked. */
 typedef void packet_leaf(packet *p, uint64_t lanes, const void *context, uint32_t child);
 
 /* Returns the number of node visits by rays. `leaf` is known where this is inlined. */
@@ -226,11 +228,13 @@ FL_INLINE uint64_t packet_walk(packet *p, const fl_bvh *bvh, const fl_tri_pack *
         packet_visit v = stack[--height];
         bool is_leaf = v.child & FL_BVH_LEAF;
         if (v.box != FL_NONE && (is_leaf || is_loose || !p->has_one_origin)) {
+            if (is_any)
+                v.lanes &= ~p->blocked;
             uint32_t before = (uint32_t)__builtin_popcountll(v.lanes);
             v.lanes = groups_meet_box(p, v.lanes, bvh, v.box);
             is_loose = (uint32_t)__builtin_popcountll(v.lanes) * 4 < before;
         } else {
-            v.lanes = groups_beyond(p, v.lanes, v.near);
+            v.lanes = is_any ? v.lanes & ~p->blocked : groups_beyond(p, v.lanes, v.near);
         }
         if (!v.lanes)
             continue;
