@@ -24,7 +24,7 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, const
         json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
         "{s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:b, s:s}", "scene",
-        scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)p->complete_samples,
+        scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)cli_picture_samples(picture),
         "light_samples", (int)scene->params.light_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
         "first_sample_seconds", p->first_sample_seconds, "stage_seconds", costs, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
@@ -32,6 +32,8 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, const
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
         (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "interrupted",
         (int)picture->was_interrupted, "film_sha256", picture->film_sha256);
+    if (line && p->is_adaptive)
+        json_object_update_new(line, json_pack("{s:b, s:f}", "adaptive", 1, "mean_samples", p->mean_samples));
     if (line && noise)
         json_object_set_new(line, "noise", cli_noise_json(noise));
     if (line) {
@@ -47,7 +49,7 @@ static void print_summary(const cli_picture *picture)
     const fl_counts *c = &p->counts;
     double rays = (double)(c->camera_rays + c->shadow_rays + c->reflect_rays + c->refract_rays);
     printf("%ux%u, %u samples in %.2f s (first picture %.3f s, first full sample %.3f s), %.1f Mray/s", picture->width,
-           picture->height, p->complete_samples, p->seconds, p->first_picture_seconds, p->first_sample_seconds,
+           picture->height, cli_picture_samples(picture), p->seconds, p->first_picture_seconds, p->first_sample_seconds,
            p->seconds > 0.0 ? rays / p->seconds * 1e-6 : 0.0);
     if (p->error.is_known)
         printf(", error about %.4f (%.4f to %.4f)", p->error.rmse, p->error.low, p->error.high);

@@ -115,6 +115,8 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->weight_threshold = o->weight_threshold;
     if (cli_has(o, CLI_OPT_SEED))
         params->seed = o->seed;
+    if (cli_has(o, CLI_OPT_ADAPTIVE))
+        params->is_adaptive = o->adaptive != 0;
     if (cli_has(o, CLI_OPT_SAMPLER))
         params->sampler = (fl_sampler)o->sampler;
     if (cli_has(o, CLI_OPT_REVOLVE_SOLVER))

@@ -8,6 +8,7 @@
 
 #include "cli/tables.h"
 
+static const char *const switch_names[] = {"off", "on", NULL};
 static const char *const sampler_names[] = {"sobol", "random", "padded", NULL};
 static const char *const solver_names[] = {"robust", "newton", NULL};
 static const char *const accel_names[] = {"bvh", "octree", "none", NULL};
@@ -79,6 +80,9 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                      "what stands behind the pixels too: depth,normal,albedo,samples,error,cost as NAME.depth.exr ..."},
     [CLI_OPT_NOISE_SPLIT] = {"noise-split", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_RENDER) | BIT(CLI_INFO),
                              "measure where the noise comes from (edges, lens, each light) and which knob helps"},
+    [CLI_OPT_ADAPTIVE] = {"adaptive", 0, NULL, CLI_KIND_CHOICE, AT(adaptive), 0, 0, switch_names,
+                          BIT(CLI_VIEW) | BIT(CLI_RENDER),
+                          "on: more samples where the noise is, the same number in the mean (default off)"},
     [CLI_OPT_UPDATE] = {"update", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_CHECK),
                         "write the golden pictures instead of comparing"},
     [CLI_OPT_REPORT] = {"report", 0, "DIR", CLI_KIND_TEXT, AT(report), 0, 0, NULL, BIT(CLI_CHECK),

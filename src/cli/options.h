@@ -51,6 +51,7 @@ typedef enum cli_option_id {
     CLI_OPT_OUTPUT,
     CLI_OPT_AOV,
     CLI_OPT_NOISE_SPLIT,
+    CLI_OPT_ADAPTIVE,
     CLI_OPT_UPDATE,
     CLI_OPT_REPORT,
     CLI_OPT_OUT,
@@ -91,7 +92,7 @@ typedef struct cli_options {
     uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats, revolve_starts;
     double time_s, budget_s, noise, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
-    uint32_t sampler, solver, accel, dialect; /**< Values of the core's enums. */
+    uint32_t adaptive, sampler, solver, accel, dialect; /**< Values of the core's enums. */
     const char *outputs[CLI_OUTPUTS_MAX];
     uint32_t output_count;
     const char *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;

@@ -96,6 +96,12 @@ bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32
     return ok;
 }
 
+uint32_t cli_picture_samples(const cli_picture *picture)
+{
+    const fl_progress *p = &picture->progress;
+    return p->is_adaptive ? (uint32_t)(p->mean_samples + 0.5) : p->complete_samples;
+}
+
 void cli_picture_close(cli_picture *picture)
 {
     free(picture->rgb);

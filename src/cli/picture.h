@@ -26,6 +26,9 @@ typedef struct cli_picture {
 bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
                         const char *progress_name, uint32_t maps, cli_picture *out);
 
+/** Samples of every pixel; in an adaptive picture the mean, rounded. */
+uint32_t cli_picture_samples(const cli_picture *picture);
+
 void cli_picture_close(cli_picture *picture);
 
 /** The picture as 8-bit RGB, 3 * width * height bytes from malloc; NULL after adding an error. */

@@ -39,9 +39,10 @@ bool fl_error_predict(const fl_error_estimate *error, double target_rmse,
 
 typedef struct fl_estimate fl_estimate;
 
-bool fl_estimate_bytes(uint32_t width, uint32_t height, size_t *out_bytes);
+/** is_adaptive: fl_estimate_capture_round will be used; needs more memory. */
+bool fl_estimate_bytes(uint32_t width, uint32_t height, bool is_adaptive, size_t *out_bytes);
 /** NULL: out of memory. */
-fl_estimate *fl_estimate_create(uint32_t width, uint32_t height);
+fl_estimate *fl_estimate_create(uint32_t width, uint32_t height, bool is_adaptive);
 void fl_estimate_destroy(fl_estimate *estimate);
 void fl_estimate_reset(fl_estimate *estimate);
 
@@ -50,7 +51,16 @@ void fl_estimate_reset(fl_estimate *estimate);
 void fl_estimate_capture(fl_estimate *estimate, const fl_film *film, const fl_rect *rect,
                          uint32_t samples);
 
-/** The estimate when every pixel has at least `samples` samples. */
+/** The end of a round of adaptive sampling, part by part: all pixels of `rect` (as above) have what
+ * the round gave them, `mean_samples` in the mean over the picture. Where a pixel went from n1 to
+ * n2 samples, its squared error is (mean after n2 - mean after n1)^2 over (1 - 1/r)^2 (r^2p + (r /
+ * (r - 1))^2p), r = n2 / n1: the snapshot rule for any ratio, which two independent parts with
+ * errors of n^-p give. A pixel without new samples keeps its figure. */
+void fl_estimate_capture_round(fl_estimate *estimate, const fl_film *film, const fl_rect *rect,
+                               double mean_samples);
+
+/** The estimate when every pixel has at least `samples` samples; after a round: that many in the
+ * mean. */
 void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_estimate *out_error);
 
 /** The error of the square of 16 x 16 pixels around (x, y) as far as it is known when every pixel

@@ -64,6 +64,9 @@ typedef struct fl_params {
     bool transparent_shadows;
     fl_sampler sampler;
     uint32_t seed;
+    /** Samples go where the noise is (allocation.h): fl_render_limits.samples is then the mean
+     * number. Never for references. A change restarts, and costs 28 bytes a pixel. */
+    bool is_adaptive;
     uint32_t frozen; /**< For measurement: bits of FL_FREEZE_*. */
     fl_revolve_solver solver;
     fl_exact_rules exact;

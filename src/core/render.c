@@ -94,7 +94,8 @@ void fl_render_destroy(fl_render *render)
 
 static bool fits(const fl_job *job, const fl_frame *frame)
 {
-    return job && job->width == frame->width && job->height == frame->height;
+    return job && job->width == frame->width && job->height == frame->height &&
+           (job->allocation != NULL) == frame->params.is_adaptive;
 }
 
 /* Room for fl_render_display's rows. The owner's alone: no lock. */
@@ -116,7 +117,8 @@ static fl_job *allocate_job(const fl_render *render, const fl_frame *frame, bool
                             fl_diags *diags)
 {
     size_t needed = 0, limit = render->options.memory_limit_bytes;
-    bool is_countable = fl_job_bytes(frame->width, frame->height, &needed);
+    bool is_countable =
+        fl_job_bytes(frame->width, frame->height, frame->params.is_adaptive, &needed);
     const fl_job *stays[] = {
         render->shown, is_abandoning || render->current == render->shown ? NULL : render->current};
     for (size_t i = 0; i < FL_COUNT_OF(stays); i++)
@@ -128,7 +130,7 @@ static fl_job *allocate_job(const fl_render *render, const fl_frame *frame, bool
                              frame->width, frame->height, needed, limit);
         return NULL;
     }
-    fl_job *job = fl_job_create(frame->width, frame->height);
+    fl_job *job = fl_job_create(frame->width, frame->height, frame->params.is_adaptive);
     if (!job)
         fl_environment_error(diags, "out of memory: rendering %u x %u pixels needs %zu bytes",
                              frame->width, frame->height, needed);
@@ -245,8 +247,11 @@ static void fill_progress(const fl_render *render, const fl_job *job, fl_progres
     out_progress->width = job->width;
     out_progress->height = job->height;
     out_progress->complete_samples = fl_schedule_complete_samples(job->schedule);
-    out_progress->mean_samples =
-        (double)fl_schedule_total_samples(job->schedule) / ((double)job->width * job->height);
+    uint64_t samples = fl_schedule_total_samples(job->schedule);
+    if (job->allocation)
+        samples += fl_allocation_samples(job->allocation);
+    out_progress->is_adaptive = job->allocation != NULL;
+    out_progress->mean_samples = (double)samples / ((double)job->width * job->height);
     out_progress->complete_ranks = fl_schedule_complete_ranks(job->schedule);
     out_progress->seconds = fl_job_seconds(render, job);
     out_progress->cpu_seconds = job->cpu_seconds;
@@ -254,7 +259,10 @@ static void fill_progress(const fl_render *render, const fl_job *job, fl_progres
     out_progress->first_sample_seconds = job->first_sample_seconds;
     memcpy(out_progress->cost_seconds, job->cost_seconds, sizeof job->cost_seconds);
     out_progress->counts = job->counts;
-    fl_estimate_read(job->estimate, out_progress->complete_samples, &out_progress->error);
+    uint32_t known = out_progress->complete_samples;
+    if (job->allocation && known >= FL_ALLOCATION_BLOCK)
+        known = (uint32_t)out_progress->mean_samples;
+    fl_estimate_read(job->estimate, known, &out_progress->error);
 }
 
 void fl_render_progress(fl_render *render, fl_progress *out_progress)

@@ -40,7 +40,9 @@ typedef enum fl_render_state {
 
 /** When to stop, whichever comes first. 0 means: no such limit. Changing limits never restarts. A
  * render always stops with the same number of samples in every pixel, at least 1: the film is then
- * the film of so many samples. */
+ * the film of so many samples. Adaptive (fl_params.is_adaptive): `samples` is the mean number, kept
+ * within some 2 %, and the film is a function of it; a time limit may stop amid a round, and then
+ * the film depends on the moment. */
 typedef struct fl_render_limits {
     uint32_t samples;
     double noise_rmse; /**< Tested where it can be known: from 4 samples on, the same for any number
@@ -55,7 +57,8 @@ typedef struct fl_progress {
                             none. */
     uint64_t newest_generation; /**< The latest restart, rendering or pending. */
     uint32_t width, height;     /**< Of the rendered part. */
-    uint32_t complete_samples;  /**< Every pixel has this many. */
+    bool is_adaptive;           /**< Samples are where the noise is; see mean_samples. */
+    uint32_t complete_samples; /**< Every pixel has this many (adaptive: at most 16 are counted). */
     double mean_samples;     /**< Finer grained; equal to complete_samples when all pixels have the
                                 same. */
     uint32_t complete_ranks; /**< Bayer ranks of sample 0 that are complete, 0 to 64. */

@@ -12,21 +12,23 @@ double fl_render_now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-bool fl_job_bytes(uint32_t width, uint32_t height, size_t *out_bytes)
+bool fl_job_bytes(uint32_t width, uint32_t height, bool is_adaptive, size_t *out_bytes)
 {
-    size_t film, schedule, estimate;
+    size_t film, schedule, estimate, allocation = 0;
     if (!fl_film_bytes(width, height, &film) || !fl_schedule_bytes(width, height, &schedule) ||
-        !fl_estimate_bytes(width, height, &estimate))
+        !fl_estimate_bytes(width, height, is_adaptive, &estimate) ||
+        (is_adaptive && !fl_allocation_bytes(width, height, &allocation)))
         return false;
     size_t rows = fl_display_floats(width) * sizeof(float);
     return !__builtin_add_overflow(film, schedule + rows, out_bytes) &&
-           !__builtin_add_overflow(*out_bytes, estimate, out_bytes);
+           !__builtin_add_overflow(*out_bytes, estimate, out_bytes) &&
+           !__builtin_add_overflow(*out_bytes, allocation, out_bytes);
 }
 
-fl_job *fl_job_create(uint32_t width, uint32_t height)
+fl_job *fl_job_create(uint32_t width, uint32_t height, bool is_adaptive)
 {
     fl_job *job = calloc(1, sizeof *job);
-    if (!job || !fl_job_bytes(width, height, &job->bytes)) {
+    if (!job || !fl_job_bytes(width, height, is_adaptive, &job->bytes)) {
         free(job);
         return NULL;
     }
@@ -34,8 +36,10 @@ fl_job *fl_job_create(uint32_t width, uint32_t height)
     job->height = height;
     job->film = fl_film_create(width, height);
     job->schedule = fl_schedule_create(width, height);
-    job->estimate = fl_estimate_create(width, height);
-    if (!job->film || !job->schedule || !job->estimate) {
+    job->estimate = fl_estimate_create(width, height, is_adaptive);
+    if (is_adaptive)
+        job->allocation = fl_allocation_create(width, height);
+    if (!job->film || !job->schedule || !job->estimate || (is_adaptive && !job->allocation)) {
         fl_job_destroy(job);
         return NULL;
     }
@@ -50,6 +54,7 @@ void fl_job_destroy(fl_job *job)
     fl_film_destroy(job->film);
     fl_schedule_destroy(job->schedule);
     fl_estimate_destroy(job->estimate);
+    fl_allocation_destroy(job->allocation);
     free(job);
 }
 
@@ -97,6 +102,22 @@ static uint32_t sample_cap(const fl_render *render, const fl_job *job)
     return cap;
 }
 
+bool fl_job_has_work(const fl_job *job)
+{
+    return fl_schedule_has_work(job->schedule) ||
+           (job->allocation && fl_allocation_has_work(job->allocation));
+}
+
+/* Adaptive sampling begins with an even block and takes the cap for the mean. */
+static void set_cap(fl_job *job, uint32_t cap)
+{
+    if (job->allocation) {
+        fl_allocation_set_goal(job->allocation, cap);
+        cap = fl_min_u32(cap, FL_ALLOCATION_BLOCK);
+    }
+    fl_schedule_set_cap(job->schedule, cap);
+}
+
 static fl_render_state state_now(const fl_render *render)
 {
     const fl_job *job = render->current;
@@ -104,7 +125,7 @@ static fl_render_state state_now(const fl_render *render)
         return FL_RENDER_EMPTY;
     if (render->has_failed)
         return FL_RENDER_FAILED;
-    if (render->out_units == 0 && !fl_schedule_has_work(job->schedule))
+    if (render->out_units == 0 && !fl_job_has_work(job))
         return FL_RENDER_DONE;
     return render->is_paused ? FL_RENDER_PAUSED : FL_RENDER_RUNNING;
 }
@@ -113,7 +134,7 @@ void fl_render_update(fl_render *render)
 {
     fl_job *job = render->current;
     if (job)
-        fl_schedule_set_cap(job->schedule, sample_cap(render, job));
+        set_cap(job, sample_cap(render, job));
     fl_render_state state = state_now(render);
     if (state == render->state)
         return;
@@ -140,6 +161,8 @@ void fl_render_begin(fl_render *render, fl_job *job, fl_frame *frame)
     fl_film_clear(job->film);
     fl_schedule_reset(job->schedule);
     fl_estimate_reset(job->estimate);
+    if (job->allocation)
+        fl_allocation_reset(job->allocation, frame->params.seed);
     job->counts = (fl_counts){0};
     job->cpu_seconds = job->seconds_before = 0.0;
     memset(job->cost_seconds, 0, sizeof job->cost_seconds);

@@ -15,6 +15,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 
+#include "core/allocation.h"
 #include "core/render.h"
 
 /** One generation: parameters, what to do next, what there is so far. */
@@ -26,6 +27,7 @@ typedef struct fl_job {
     fl_film *film;
     fl_schedule *schedule;
     fl_estimate *estimate;
+    fl_allocation *allocation; /**< Adaptive sampling only; else NULL. */
     fl_counts counts;
     double cpu_seconds, cost_seconds[FL_COST_COUNT];
     double seconds_before; /**< Rendering time up to the last stop of the clock. */
@@ -35,8 +37,10 @@ typedef struct fl_job {
 } fl_job;
 
 /** NULL: out of memory. No frame yet. */
-fl_job *fl_job_create(uint32_t width, uint32_t height);
-bool fl_job_bytes(uint32_t width, uint32_t height, size_t *out_bytes);
+fl_job *fl_job_create(uint32_t width, uint32_t height, bool is_adaptive);
+bool fl_job_bytes(uint32_t width, uint32_t height, bool is_adaptive, size_t *out_bytes);
+/** Whether there is something to hand out or, no unit being out, to plan. */
+bool fl_job_has_work(const fl_job *job);
 void fl_job_destroy(fl_job *job);
 
 /** Things to free once the lock is released. */

@@ -21,15 +21,38 @@ typedef struct errand {
     fl_unit unit;
     fl_counts counts;
     double cpu_seconds; /* Of the thread since its last unit. */
+    bool is_allocated;  /* A unit of adaptive sampling; its pixels are already listed. */
+    uint32_t tile;      /* Of the allocation. */
     bool is_complete, is_out_of_memory;
 } errand;
+
+/* The next unit of the schedule, or of adaptive sampling once that has no more. */
+static bool find_unit(fl_worker *worker, const fl_job *job, errand *out_errand)
+{
+    out_errand->is_allocated = false;
+    if (fl_schedule_next(job->schedule, &out_errand->work))
+        return true;
+    if (!job->allocation)
+        return false;
+    out_errand->is_allocated = true;
+    out_errand->unit.count =
+        fl_allocation_next(job->allocation, job->film, job->frame->x0, job->frame->y0, worker->x,
+                           worker->y, &out_errand->work.sample, &out_errand->tile);
+    return out_errand->unit.count > 0;
+}
+
+static bool has_unit(const fl_job *job)
+{
+    return fl_schedule_has_work(job->schedule) ||
+           (job->allocation && fl_allocation_has_units(job->allocation));
+}
 
 /* Take a unit and what is needed to do it without the lock. */
 static bool take(fl_worker *worker, errand *out_errand, fl_trash *trash)
 {
     fl_render *render = worker->render;
     fl_job *job = render->current;
-    if (render->state != FL_RENDER_RUNNING || !fl_schedule_next(job->schedule, &out_errand->work))
+    if (render->state != FL_RENDER_RUNNING || !find_unit(worker, job, out_errand))
         return false;
     render->out_units++;
     out_errand->generation = job->generation;
@@ -38,7 +61,7 @@ static bool take(fl_worker *worker, errand *out_errand, fl_trash *trash)
             trash->frames[trash->frame_count++] = worker->frame;
         worker->frame = fl_frame_retain(job->frame);
     }
-    if (render->parked > 0 && fl_schedule_has_work(job->schedule))
+    if (render->parked > 0 && has_unit(job))
         pthread_cond_signal(&render->work);
     return true;
 }
@@ -48,8 +71,9 @@ static void run(fl_worker *worker, errand *e)
     e->unit.x = worker->x;
     e->unit.y = worker->y;
     e->unit.sample = e->work.sample;
-    e->unit.count =
-        fl_work_pixels(&e->work, worker->frame->x0, worker->frame->y0, worker->x, worker->y);
+    if (!e->is_allocated)
+        e->unit.count =
+            fl_work_pixels(&e->work, worker->frame->x0, worker->frame->y0, worker->x, worker->y);
     e->counts = (fl_counts){0};
     e->is_out_of_memory = false;
     e->is_complete =
@@ -82,8 +106,13 @@ static void commit(fl_worker *worker, const errand *e, fl_trash *trash)
                 worker->frame->y0);
     fl_counts_add(&job->counts, &e->counts);
     add_seconds(job, e->cpu_seconds, fl_workspace_ticks(worker->workspace));
+    if (job->allocation)
+        fl_allocation_add(job->allocation, &e->unit, fl_workspace_result(worker->workspace),
+                          worker->frame->x0, worker->frame->y0);
     fl_rect rect;
-    if (fl_schedule_commit(job->schedule, &e->work, &rect))
+    if (e->is_allocated)
+        fl_allocation_commit(job->allocation, e->tile, e->unit.count);
+    else if (fl_schedule_commit(job->schedule, &e->work, &rect))
         fl_estimate_capture(job->estimate, job->film, &rect, e->work.sample + 1);
     bool is_picture = job != render->shown && fl_schedule_complete_ranks(job->schedule) > 0;
     bool is_first_sample =
@@ -117,6 +146,34 @@ static bool give_back(fl_worker *worker, const errand *e, fl_trash *trash)
     return render->revision != revision || render->state != FL_RENDER_RUNNING;
 }
 
+/* Adaptive sampling, between rounds: a step of planning, short enough for the lock. */
+static bool plan(fl_render *render)
+{
+    fl_job *job = render->current;
+    if (render->state != FL_RENDER_RUNNING || render->out_units > 0 || !job->allocation ||
+        fl_schedule_has_work(job->schedule) || !fl_allocation_must_plan(job->allocation))
+        return false;
+    fl_allocation_plan(job->allocation, job->film, job->estimate);
+    render->revision++;
+    fl_render_update(render);
+    return true;
+}
+
+/* The unit that was taken, from tracing to the film. True: the owner should hear of it. */
+static bool do_unit(fl_worker *worker, errand *e, fl_trash *trash)
+{
+    fl_render *render = worker->render;
+    pthread_mutex_unlock(&render->lock);
+    fl_trash_empty(trash);
+    run(worker, e);
+    pthread_mutex_lock(&render->lock);
+    uint64_t begun = fl_ticks();
+    bool should_notify = give_back(worker, e, trash);
+    *fl_workspace_ticks(worker->workspace) =
+        (fl_cost_ticks){.of[FL_COST_FILM] = fl_ticks() - begun}; /* For the next unit. */
+    return should_notify;
+}
+
 /* Nothing to do: let go of the scene, so that a parked worker keeps nothing alive, and sleep. */
 static void park(fl_worker *worker)
 {
@@ -145,18 +202,18 @@ void *fl_worker_main(void *argument)
     pthread_mutex_lock(&render->lock);
     while (!render->should_quit) {
         fl_trash trash = {0};
-        if (!take(worker, &e, &trash)) {
+        bool should_notify = false;
+        if (take(worker, &e, &trash)) {
+            should_notify = do_unit(worker, &e, &trash);
+        } else if (plan(render)) {
+            should_notify = render->state != FL_RENDER_RUNNING;
+            pthread_mutex_unlock(&render->lock); /* Others wait for it between the steps. */
+            pthread_mutex_lock(&render->lock);
+        } else {
             park(worker);
             continue;
         }
-        pthread_mutex_unlock(&render->lock);
-        fl_trash_empty(&trash);
-        run(worker, &e);
-        pthread_mutex_lock(&render->lock);
-        uint64_t begun = fl_ticks();
-        bool should_notify = give_back(worker, &e, &trash) && !render->is_notified;
-        *fl_workspace_ticks(worker->workspace) =
-            (fl_cost_ticks){.of[FL_COST_FILM] = fl_ticks() - begun}; /* For the next unit. */
+        should_notify &= !render->is_notified;
         render->is_notified |= should_notify;
         bool calls = should_notify && render->options.notify;
         if (calls || trash.frame_count > 0 || trash.job_count > 0) {

@@ -170,7 +170,7 @@ bool fl_camera_read_text(const char *text, size_t text_bytes, fl_camera *camera)
 /* Whole numbers of the settings, in the order of the text. */
 typedef struct settings {
     double size[2], crop[4], depth, light_samples, light_default, weight, transparent, sampler,
-        seed, solver, exact, dialect;
+        seed, solver, exact, dialect, adaptive;
 } settings;
 
 static const struct {
@@ -189,7 +189,10 @@ static const struct {
     {"solver", 1},
     {"exact", 1},
     {"dialect", 1},
+    {"adaptive", 1}, /* From here on: may be missing, then 0. */
 };
+
+enum { ROWS_ALWAYS = 12 };
 
 static settings settings_of(const fl_params *p, fl_dialect dialect)
 {
@@ -206,7 +209,8 @@ static settings settings_of(const fl_params *p, fl_dialect dialect)
                       .seed = p->seed,
                       .solver = p->solver,
                       .exact = is_exact,
-                      .dialect = dialect};
+                      .dialect = dialect,
+                      .adaptive = p->is_adaptive};
 }
 
 static void settings_text(const settings *s, char *out, size_t out_bytes)
@@ -229,8 +233,11 @@ static bool settings_read(const char *text, settings *out)
 {
     double *value = out->size;
     for (size_t i = 0; i < FL_COUNT_OF(rows); value += rows[i].count, i++)
-        if (!numbers_after(text, text + strlen(text), rows[i].name, rows[i].count, value))
-            return false;
+        if (!numbers_after(text, text + strlen(text), rows[i].name, rows[i].count, value)) {
+            if (i < ROWS_ALWAYS)
+                return false;
+            memset(value, 0, (size_t)rows[i].count * sizeof *value);
+        }
     double *first = out->size;
     for (double *v = first; v < value; v++)
         if (v != &out->weight && !(*v >= 0.0 && *v <= 4294967295.0))
@@ -260,7 +267,9 @@ void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, const fl_s
     settings s = settings_of(params, scene ? scene->dialect : FL_DIALECT_FIRSTLIGHT);
     lights_text(params, scene, out->lights);
     settings_text(&s, out->settings, sizeof out->settings);
-    snprintf(out->samples, sizeof out->samples, "%u", progress->complete_samples);
+    uint32_t samples = progress->is_adaptive ? (uint32_t)(progress->mean_samples + 0.5)
+                                             : progress->complete_samples;
+    snprintf(out->samples, sizeof out->samples, "%u", samples);
     const fl_error_estimate *error = &progress->error;
     if (error->is_known)
         snprintf(out->error, sizeof out->error, "%.6g (%.6g to %.6g)", error->rmse, error->low,
@@ -340,6 +349,7 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
     p->sampler = (fl_sampler)s.sampler;
     p->seed = (uint32_t)s.seed;
     p->solver = (fl_revolve_solver)s.solver;
+    p->is_adaptive = s.adaptive != 0.0;
     out->is_exact = s.exact != 0.0;
     out->dialect = (fl_dialect)s.dialect;
     out->samples = (uint32_t)samples;
@@ -403,6 +413,7 @@ void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_param
     params->sampler = from->sampler;
     params->seed = from->seed;
     params->solver = from->solver;
+    params->is_adaptive = from->is_adaptive;
     if (state->lights && state->lights[0])
         apply_lights(state->lights, scene, params);
 }

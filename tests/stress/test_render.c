@@ -26,6 +26,83 @@ static void any_number_of_threads_gives_the_same_bytes(void **state)
     }
 }
 
+static void restart_adaptive(fl_render *render, uint32_t seed)
+{
+    fl_diags diags = {0};
+    fl_params params = fake_params(seed, X0, Y0, W, H);
+    params.is_adaptive = true;
+    assert_true(fl_render_restart(render, NULL, &params, &diags));
+    fake_poke();
+}
+
+/* Every pixel holds the mean of a whole number of blocks of its own samples, `about` in the mean. */
+static void assert_adaptive_film(fl_render *render, uint32_t seed, double about, float *out_mean)
+{
+    static float samples[W * H];
+    fl_progress progress;
+    assert_true(fl_render_mean(render, out_mean, 3 * W * H, &progress));
+    assert_true(fl_render_copy_map(render, FL_RENDER_SAMPLES, samples, W * H, &progress));
+    assert_true(progress.is_adaptive && progress.error.is_known);
+    assert_true(fabs(progress.mean_samples / about - 1.0) < 0.03);
+    uint64_t sum = 0;
+    for (uint32_t i = 0; i < W * H; i++) {
+        float want[3];
+        uint32_t n = (uint32_t)samples[i];
+        assert_true(n >= 16 && n % 16 == 0);
+        fake_mean(seed, X0 + i % W, Y0 + i / W, 1, 1, n, want);
+        assert_memory_equal(out_mean + 3 * i, want, sizeof want);
+        sum += n;
+    }
+    assert_int_equal(progress.counts.samples, sum);
+}
+
+static void adaptive_films_are_the_same_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    static float first[3 * W * H], mean[3 * W * H];
+    for (size_t t = 0; t < FL_COUNT_OF(thread_counts); t++) {
+        fl_render *render = kit_render(thread_counts[t]);
+        kit_limit(render, 50);
+        restart_adaptive(render, 5);
+        assert_true(fl_render_wait(render, -1.0));
+        assert_adaptive_film(render, 5, 50, t ? mean : first);
+        if (t)
+            assert_memory_equal(mean, first, sizeof first);
+        kit_limit(render, 90);
+        assert_true(fl_render_wait(render, -1.0));
+        assert_adaptive_film(render, 5, 90, mean);
+        fl_render_destroy(render);
+    }
+}
+
+/* Amid rounds and plans, from even to adaptive and back. */
+static void adaptive_renders_restart_and_end_anywhere(void **state)
+{
+    (void)state;
+    static float mean[3 * W * H];
+    fl_render *render = kit_render(3);
+    for (uint32_t round = 0; round < 12; round++) {
+        kit_limit(render, 64);
+        fake_permit(200 + 90 * round);
+        restart_adaptive(render, round);
+        fake_await_waiting(1);
+        if (round % 3 == 0) {
+            fake_permit(UINT64_MAX);
+            kit_limit(render, 2);
+            kit_restart(render, round, X0, Y0, W, H);
+            assert_true(fl_render_wait(render, -1.0));
+            kit_assert_film(render, round, X0, Y0, W, H, 2);
+        }
+    }
+    restart_adaptive(render, 77);
+    fake_permit(UINT64_MAX);
+    assert_true(fl_render_wait(render, -1.0));
+    assert_adaptive_film(render, 77, 64, mean);
+    fl_render_set_limits(render, &(fl_render_limits){0});
+    restart_adaptive(render, 3);
+    fl_render_destroy(render);
+}
+
 static void a_raised_cap_goes_on_and_a_lowered_one_keeps(void **state)
 {
     (void)state;
@@ -444,6 +521,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
+        cmocka_unit_test(adaptive_films_are_the_same_for_any_number_of_threads),
+        cmocka_unit_test(adaptive_renders_restart_and_end_anywhere),
         cmocka_unit_test(a_raised_cap_goes_on_and_a_lowered_one_keeps),
         cmocka_unit_test(a_lowered_cap_amid_the_work_ends_even),
         cmocka_unit_test(pauses_leave_the_bytes_alone),

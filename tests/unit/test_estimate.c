@@ -70,7 +70,7 @@ static void capture_all(world *w)
 
 static void world_init(world *w, double p, uint32_t seed)
 {
-    *w = (world){fl_film_create(W, H), fl_estimate_create(W, H), 0, seed, p};
+    *w = (world){fl_film_create(W, H), fl_estimate_create(W, H, false), 0, seed, p};
     assert_true(w->film && w->estimate);
 }
 
