@@ -7,8 +7,16 @@
 #include "cli/noise.h"
 #include "io/image_file.h"
 
+static json_t *forecast_json(const fl_progress *progress, double target)
+{
+    cli_forecast f;
+    if (!cli_forecast_read(progress, target, &f))
+        return json_pack("{s:f, s:n, s:n, s:n}", "rmse", target, "seconds", "low", "high");
+    return json_pack("{s:f, s:f, s:f, s:f}", "rmse", target, "seconds", f.seconds, "low", f.low, "high", f.high);
+}
+
 /* One line for programs: the keys are binding (docs/cli.md). */
-static void print_json(const cli_scene *scene, const cli_picture *picture, const fl_noise_split *noise)
+static void print_json(const cli_scene *scene, const cli_picture *picture, double target, const fl_noise_split *noise)
 {
     const fl_progress *p = &picture->progress;
     const fl_counts *c = &p->counts;
@@ -32,6 +40,8 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, const
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
         (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "interrupted",
         (int)picture->was_interrupted, "film_sha256", picture->film_sha256);
+    if (line)
+        json_object_set_new(line, "forecast", forecast_json(p, target));
     if (line && p->is_adaptive)
         json_object_update_new(line, json_pack("{s:b, s:f}", "adaptive", 1, "mean_samples", p->mean_samples));
     if (line && noise)
@@ -43,7 +53,7 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, const
     json_decref(line);
 }
 
-static void print_summary(const cli_picture *picture)
+static void print_summary(const cli_picture *picture, double target)
 {
     const fl_progress *p = &picture->progress;
     const fl_counts *c = &p->counts;
@@ -53,6 +63,10 @@ static void print_summary(const cli_picture *picture)
            p->seconds > 0.0 ? rays / p->seconds * 1e-6 : 0.0);
     if (p->error.is_known)
         printf(", error about %.4f (%.4f to %.4f)", p->error.rmse, p->error.low, p->error.high);
+    cli_forecast forecast;
+    if (cli_forecast_read(p, target, &forecast) && forecast.rmse < p->error.rmse)
+        printf("; %.3g %% would take about %.3g s (%.3g to %.3g)", 100.0 * target, forecast.seconds, forecast.low,
+               forecast.high);
     if (c->invalid_samples)
         printf(", %llu INVALID samples dropped", (unsigned long long)c->invalid_samples);
     if (c->dropped_branches)
@@ -94,14 +108,15 @@ int cli_command_render(const cli_options *options)
                 ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;
             if (options->aov && options->output_count)
                 ok = cli_aov_save(&scene, &picture, &aovs, options->outputs[0], &diags) && ok;
+            double target = options->noise > 0.0 ? options->noise : CLI_FORECAST_RMSE;
             fl_noise_split split, *noise = NULL;
             if (cli_has(options, CLI_OPT_NOISE_SPLIT) && !picture.was_interrupted &&
                 cli_noise_measure(scene.compiled, &scene.params, is_quiet ? NULL : scene.path, &split, &diags))
                 noise = &split;
             if (cli_has(options, CLI_OPT_JSON))
-                print_json(&scene, &picture, noise);
+                print_json(&scene, &picture, target, noise);
             else if (!is_quiet)
-                print_summary(&picture);
+                print_summary(&picture, target);
             if (noise && !is_quiet && !cli_has(options, CLI_OPT_JSON))
                 cli_noise_print(noise, "");
         }

@@ -146,6 +146,7 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     if (out->state.scene_path)
         fl_saved_state_apply(&out->state, out->scene, &out->params);
     apply_options(options, &out->params);
+    out->params.strata = cli_sample_limit(options, out);
     if (!fl_params_check(&out->params, out->diags))
         return false;
     bool is_auto = cli_has(options, CLI_OPT_LIGHT_SAMPLES) && options->light_samples == CLI_AUTO;

@@ -9,7 +9,7 @@
 #include "cli/tables.h"
 
 static const char *const switch_names[] = {"off", "on", NULL};
-static const char *const sampler_names[] = {"sobol", "random", "padded", NULL};
+static const char *const sampler_names[] = {"sobol", "random", "padded", "stratified", NULL};
 static const char *const solver_names[] = {"robust", "newton", NULL};
 static const char *const accel_names[] = {"bvh", "octree", "none", NULL};
 static const char *const isa_names[] = {"scalar", "sse2", "avx2", "neon", "auto", NULL};
@@ -52,7 +52,7 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
     [CLI_OPT_SEED] = {"seed", 0, "N", CLI_KIND_COUNT, AT(seed), 0, 4294967295.0, NULL, LOOKING,
                       "another set of samples"},
     [CLI_OPT_SAMPLER] = {"sampler", 0, NULL, CLI_KIND_CHOICE, AT(sampler), 0, 0, sampler_names, PICTURE | BIT(CLI_INFO),
-                         "where samples lie (default sobol)"},
+                         "where samples lie (default sobol; the others are there to compare with)"},
     [CLI_OPT_REVOLVE_SOLVER] = {"revolve-solver", 0, NULL, CLI_KIND_CHOICE, AT(solver), 0, 0, solver_names,
                                 PICTURE | BIT(CLI_INFO), "surfaces of revolution (default robust)"},
     [CLI_OPT_REVOLVE_STARTS] = {"revolve-starts", 0, "N", CLI_KIND_COUNT, AT(revolve_starts), 1,

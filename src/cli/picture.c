@@ -8,6 +8,16 @@
 
 #include "io/image_file.h"
 
+bool cli_forecast_read(const fl_progress *progress, double target_rmse, cli_forecast *out)
+{
+    fl_error_forecast samples;
+    if (progress->mean_samples <= 0.0 || !fl_error_predict(&progress->error, target_rmse, &samples))
+        return false;
+    double pace = progress->seconds / progress->mean_samples;
+    *out = (cli_forecast){target_rmse, pace * samples.samples, pace * samples.low, pace * samples.high};
+    return true;
+}
+
 /* One line, rewritten in place, on a terminal only. */
 static void show_progress(const char *name, const fl_progress *progress, const fl_render_limits *limits)
 {
@@ -16,10 +26,18 @@ static void show_progress(const char *name, const fl_progress *progress, const f
         share = progress->mean_samples / limits->samples;
     if (limits->seconds > 0.0)
         share = fl_max(share, progress->seconds / limits->seconds);
+    cli_forecast forecast;
+    double target = limits->noise_rmse > 0.0 ? limits->noise_rmse : CLI_FORECAST_RMSE;
+    bool is_forecast = cli_forecast_read(progress, target, &forecast);
+    if (is_forecast && limits->noise_rmse > 0.0)
+        share = fl_max(share, progress->seconds / forecast.seconds);
     double left = share > 0.0 ? progress->seconds * (1.0 - share) / share : 0.0;
     fprintf(stderr, "\r%s: %5.1f samples, %3.0f %%, %.0f s left", name, progress->mean_samples, 100.0 * share, left);
     if (progress->error.is_known)
         fprintf(stderr, ", error %.4f", progress->error.rmse);
+    if (is_forecast && forecast.seconds > progress->seconds)
+        fprintf(stderr, "; %.3g %% after about %.3g s (%.3g to %.3g)", 100.0 * target, forecast.seconds, forecast.low,
+                forecast.high);
     fputs("   ", stderr);
     fflush(stderr);
 }

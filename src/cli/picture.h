@@ -26,6 +26,17 @@ typedef struct cli_picture {
 bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
                         const char *progress_name, uint32_t maps, cli_picture *out);
 
+/** When the error will be `rmse`, in seconds of rendering since the restart. */
+typedef struct cli_forecast {
+    double rmse, seconds, low, high;
+} cli_forecast;
+
+/** The target that is spoken of when none was given: half a per cent of full scale. */
+#define CLI_FORECAST_RMSE 0.005
+
+/** At the pace so far. False: not known yet, below 4 samples. Reached already: the present time. */
+bool cli_forecast_read(const fl_progress *progress, double target_rmse, cli_forecast *out);
+
 /** Samples of every pixel; in an adaptive picture the mean, rounded. */
 uint32_t cli_picture_samples(const cli_picture *picture);
 

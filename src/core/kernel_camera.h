@@ -64,11 +64,13 @@ FL_INLINE void fl_camera_generate(const fl_frame *frame, const fl_unit *unit, ui
     const fl_params *params = &frame->params;
     fl_sample_pass pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
                                                params->frozen & FL_FREEZE_PIXEL ? 0 : unit->sample);
+    pass.strata = params->strata;
     fl_sample_pass lens_pass = pass;
     bool is_apart = (params->frozen & (FL_FREEZE_PIXEL | FL_FREEZE_LENS)) != 0;
     if (is_apart)
         lens_pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
                                          params->frozen & FL_FREEZE_LENS ? 0 : unit->sample);
+    lens_pass.strata = params->strata;
     for (uint32_t i = 0; i < count; i++)
         stage->pixel[i] = fl_pixel_id(unit->x[begin + i], unit->y[begin + i]);
 

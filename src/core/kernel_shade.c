@@ -51,7 +51,8 @@ FL_INLINE wide3 light_point(const fl_frame *frame, const fl_frame_light *light,
         v = fl_wf_sample(pass, key, 1);
     } else {
         fl_wu set = fl_wu_set_light(frame->params.seed, fl_wu_load(stage->path + at), light->index);
-        fl_wf_sample_pair(pass->kind, pass->seed, pixel, fl_wu_set(pass->index), set, &u, &v);
+        fl_wf_sample_pair(pass->kind, pass->seed, pixel, fl_wu_set(pass->index), set, pass->strata,
+                          &u, &v);
     }
     fl_wf_warp_disk_light(light->position, light->axis_u, light->axis_v, u, v, point);
     return (wide3){point[0], point[1], point[2]};
@@ -118,6 +119,7 @@ static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sa
     uint32_t camera_set = fl_set_light(frame->params.seed, FL_PATH_CAMERA, from->index);
     fl_sample_pass pass =
         fl_sample_pass_begin(frame->params.sampler, frame->params.seed, camera_set, index);
+    pass.strata = frame->params.strata * from->samples;
     out->rays.count = 0;
     for (uint32_t i = 0; i < count; i += FL_W) {
         fl_wm live = fl_wm_first(count - i);

@@ -86,6 +86,23 @@ static bool check_size(const fl_params *p, fl_diags *diags)
     return is_fine;
 }
 
+/* Stratified sampling has a stratum for every sample, and for every light sample of each. */
+static bool check_strata(const fl_params *p, fl_diags *diags)
+{
+    if (p->sampler != FL_SAMPLER_STRATIFIED)
+        return true;
+    uint32_t most = fl_max_u32(p->light_samples, fl_max_u32(p->light_samples_default, 1));
+    for (uint32_t i = 0; i < p->light_count; i++)
+        most = fl_max_u32(most, p->lights[i].samples);
+    if (p->strata > 0 && (uint64_t)p->strata * most <= FL_STRATA_MAX)
+        return true;
+    return fl_error(diags, nowhere,
+                    "the stratified sampler must know the number of samples, at most %u with %u "
+                    "light samples: give "
+                    "--samples",
+                    FL_STRATA_MAX / most, most);
+}
+
 static bool check_limits(const fl_params *p, fl_diags *diags)
 {
     bool is_fine = true;
@@ -102,6 +119,7 @@ static bool check_limits(const fl_params *p, fl_diags *diags)
     if (p->solver > FL_REVOLVE_MAX_STARTS)
         is_fine = fl_error(diags, nowhere, "Newton's method takes 1 to %d starts a segment, got %u",
                            FL_REVOLVE_MAX_STARTS, p->solver);
+    is_fine = check_strata(p, diags) && is_fine;
     if (!is_float3(p->background))
         is_fine = fl_error(diags, nowhere, "the background colour must be finite");
     if (!is_float3(p->ambient))

@@ -64,6 +64,7 @@ typedef struct fl_params {
     bool transparent_shadows;
     fl_sampler sampler;
     uint32_t seed;
+    uint32_t strata; /**< Samples a pixel will get: FL_SAMPLER_STRATIFIED must know. */
     /** Samples go where the noise is (allocation.h): fl_render_limits.samples is then the mean
      * number. Never for references. A change restarts, and costs 28 bytes a pixel. */
     bool is_adaptive;

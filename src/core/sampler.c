@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/sampler.h"
 
+#include <math.h>
+
 /* Direction numbers of dimensions 2 and 3: one word per bit of k, lowest bit first. Made from the
  * primitive polynomials and initial values (s = 2, a = 1, m = 1, 3) and (s = 3, a = 1, m = 1, 3, 1)
  * of Joe and Kuo; the test makes them again. */
@@ -33,7 +35,55 @@ uint32_t fl_sobol_raw(uint32_t k, uint32_t dimension)
 fl_sample_pass fl_sample_pass_begin(fl_sampler kind, uint32_t seed, uint32_t set, uint32_t index)
 {
     fl_sample_pass pass = {.kind = kind, .seed = seed, .set = set, .index = index};
-    for (uint32_t d = 0; kind != FL_SAMPLER_RANDOM && d < FL_SAMPLE_DIMENSIONS; d++)
+    bool is_sobol = kind == FL_SAMPLER_SOBOL || kind == FL_SAMPLER_PADDED;
+    for (uint32_t d = 0; is_sobol && d < FL_SAMPLE_DIMENSIONS; d++)
         pass.raw_reversed[d] = fl_reverse_bits(fl_sample_raw(kind, seed, index, set, d));
     return pass;
+}
+
+/* --- Stratified --------------------------------------------------------------------------------
+ */
+
+enum { STRATA_SEED = 4 };
+
+/* Where `i` goes in an order of 0 ... count - 1 that the seed decides: a bijection of the next
+ * power of two, walked until it lands below count. */
+static uint32_t permute(uint32_t i, uint32_t count, uint32_t seed)
+{
+    uint32_t bits = 1;
+    while (bits < 32 && (uint32_t)1 << bits < count)
+        bits++;
+    uint32_t mask = bits < 32 ? ((uint32_t)1 << bits) - 1 : UINT32_MAX, shift = (bits + 1) / 2;
+    do {
+        for (uint32_t round = 0; round < 3; round++) {
+            uint32_t h = fl_hash_step(seed, round);
+            i = (i * (h | 1u) + (h >> 7)) & mask;
+            i ^= i >> shift;
+        }
+    } while (i >= count);
+    return i;
+}
+
+/* The most square shape: the largest divisor not above the root. */
+static uint32_t strata_rows(uint32_t strata)
+{
+    uint32_t rows = 1;
+    for (uint32_t r = 2; r * r <= strata; r++)
+        if (strata % r == 0)
+            rows = r;
+    return rows;
+}
+
+float fl_sample_stratified(uint32_t seed, uint32_t pixel, uint32_t index, uint32_t set,
+                           uint32_t dimension, uint32_t strata)
+{
+    FL_ASSERT(strata > 0 && strata <= FL_STRATA_MAX);
+    uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, STRATA_SEED), pixel), set);
+    h = fl_hash_step(fl_hash_step(h, dimension / 2), index / strata);
+    uint32_t rows = strata_rows(strata), columns = strata / rows;
+    uint32_t cell = permute(index % strata, strata, h);
+    bool is_even = dimension % 2 == 0;
+    uint32_t at = is_even ? cell % columns : cell / columns, count = is_even ? columns : rows;
+    double jitter = (double)fl_sample_scalar(FL_SAMPLER_RANDOM, seed, pixel, index, set, dimension);
+    return (float)(floor((at + jitter) / count * 0x1p24) * 0x1p-24);
 }

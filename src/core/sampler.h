@@ -9,6 +9,9 @@
  * (0,2)-sequence and are the best pair: hand out dimensions only to features in use.
  * `random`: an independent hash for every number; the slow baseline to compare with.
  * `padded`: the first two Sobol dimensions only, the lens a set of its own; to compare with, too.
+ * `stratified`: each pair of dimensions in as many equal strata as there will be samples, one
+ * jittered sample in each, in an order of its own: what a renderer that knows its number of samples
+ * does. Not progressive; scalar, to compare with only.
  *
  *     pixel   y << 16 | x, absolute in the whole picture also when only a crop is rendered
  *     set     FL_SET_CAMERA: pixel filter and lens, up to four dimensions, index i (sample number);
@@ -27,7 +30,8 @@
 typedef enum fl_sampler {
     FL_SAMPLER_SOBOL,
     FL_SAMPLER_RANDOM,
-    FL_SAMPLER_PADDED /**< Sobol in pairs: dimensions 2, 3 are those of a set of their own. */
+    FL_SAMPLER_PADDED, /**< Sobol in pairs: dimensions 2, 3 are those of a set of their own. */
+    FL_SAMPLER_STRATIFIED
 } fl_sampler;
 
 #define FL_SET_CAMERA  0u /* the set of the pixel filter and the lens */
@@ -107,10 +111,12 @@ static inline float fl_unit_float(uint32_t bits)
     return (float)(bits >> 8) * 0x1p-24f;
 }
 
-/** The definition: number `dimension` of point `index` of `set` at `pixel`, in [0, 1). */
+/** The definition: number `dimension` of point `index` of `set` at `pixel`, in [0, 1); of all kinds
+ * but `stratified`, whose definition is fl_sample_stratified. */
 static inline float fl_sample_scalar(fl_sampler kind, uint32_t seed, uint32_t pixel, uint32_t index,
                                      uint32_t set, uint32_t dimension)
 {
+    FL_ASSERT(kind != FL_SAMPLER_STRATIFIED);
     if (kind == FL_SAMPLER_RANDOM) {
         uint32_t h = fl_hash_step(fl_hash_step(fl_hash_step(seed, 3), pixel), index);
         return fl_unit_float(fl_hash_step(fl_hash_step(h, set), dimension));
@@ -119,10 +125,18 @@ static inline float fl_sample_scalar(fl_sampler kind, uint32_t seed, uint32_t pi
     return fl_unit_float(fl_owen(fl_sample_raw(kind, seed, index, set, dimension), h));
 }
 
+/** The same for `stratified` with `strata` points, 1 to FL_STRATA_MAX; later indices begin again
+ * with another order. O(strata^0.5) for the shape of the strata. */
+float fl_sample_stratified(uint32_t seed, uint32_t pixel, uint32_t index, uint32_t set,
+                           uint32_t dimension, uint32_t strata);
+
+enum { FL_STRATA_MAX = 1 << 24 };
+
 /** What all pixels share for one (set, index): made once a pass, read by wide_sampler.h. */
 typedef struct fl_sample_pass {
     fl_sampler kind;
     uint32_t seed, set, index;
+    uint32_t strata; /* FL_SAMPLER_STRATIFIED only; the caller sets it. */
     uint32_t raw_reversed[FL_SAMPLE_DIMENSIONS]; /* bit-reversed raw points, as scrambling wants */
 } fl_sample_pass;
 

@@ -7,7 +7,7 @@
  *     fl_wu key = fl_wu_sample_key(&pass, pixel);                                 once per FL_W
  * pixels fl_wf u = fl_wf_sample(&pass, key, dimension);                              per number A
  * set per lane (lights seen from secondary rays, whose paths differ): fl_wf_sample_pair(kind, seed,
- * pixel, index, fl_wu_set_light(seed, path, light), &u, &v);
+ * pixel, index, fl_wu_set_light(seed, path, light), strata, &u, &v);
  */
 #ifndef FL_WIDE_SAMPLER_H
 #define FL_WIDE_SAMPLER_H
@@ -81,10 +81,22 @@ FL_INLINE fl_wf fl_wf_unit(fl_wu bits)
     return fl_wf_from_wi((fl_wi)(bits >> 8)) * 0x1p-24f;
 }
 
+/** Numbers of `stratified`, lane by lane: it is there to compare with, not to be fast. */
+FL_INLINE fl_wf fl_wf_sample_strata(uint32_t seed, fl_wu pixel, fl_wu index, fl_wu set,
+                                    uint32_t dimension, uint32_t strata)
+{
+    fl_wf u = fl_wf_set(0.0f);
+    for (int i = 0; i < FL_W; i++)
+        u[i] = fl_sample_stratified(seed, pixel[i], index[i], set[i], dimension, strata);
+    return u;
+}
+
 /** The part of the hash that all dimensions of a pixel's point share. */
 FL_INLINE fl_wu fl_wu_sample_key(const fl_sample_pass *pass, fl_wu pixel)
 {
     bool is_random = pass->kind == FL_SAMPLER_RANDOM;
+    if (pass->kind == FL_SAMPLER_STRATIFIED)
+        return pixel;
     uint32_t start = is_random ? fl_hash_step(pass->seed, 3) : pass->seed;
     fl_wu h = fl_wu_hash_step(fl_wu_set(start), pixel);
     if (is_random)
@@ -95,6 +107,9 @@ FL_INLINE fl_wu fl_wu_sample_key(const fl_sample_pass *pass, fl_wu pixel)
 /** Number `dimension` of the pass's point at the pixels whose keys are `key`. */
 FL_INLINE fl_wf fl_wf_sample(const fl_sample_pass *pass, fl_wu key, uint32_t dimension)
 {
+    if (pass->kind == FL_SAMPLER_STRATIFIED)
+        return fl_wf_sample_strata(pass->seed, key, fl_wu_set(pass->index), fl_wu_set(pass->set),
+                                   dimension, pass->strata);
     fl_wu h = fl_wu_hash_step(key, fl_wu_set(dimension));
     if (pass->kind == FL_SAMPLER_RANDOM)
         return fl_wf_unit(h);
@@ -104,8 +119,13 @@ FL_INLINE fl_wf fl_wf_sample(const fl_sample_pass *pass, fl_wu key, uint32_t dim
 
 /** Dimensions 0 and 1 of point `index` of `set`, both per lane. */
 FL_INLINE void fl_wf_sample_pair(fl_sampler kind, uint32_t seed, fl_wu pixel, fl_wu index,
-                                 fl_wu set, fl_wf *out_u, fl_wf *out_v)
+                                 fl_wu set, uint32_t strata, fl_wf *out_u, fl_wf *out_v)
 {
+    if (kind == FL_SAMPLER_STRATIFIED) {
+        *out_u = fl_wf_sample_strata(seed, pixel, index, set, 0, strata);
+        *out_v = fl_wf_sample_strata(seed, pixel, index, set, 1, strata);
+        return;
+    }
     if (kind == FL_SAMPLER_RANDOM) {
         fl_wu h = fl_wu_hash_step(fl_wu_set(fl_hash_step(seed, 3)), pixel);
         h = fl_wu_hash_step(fl_wu_hash_step(h, index), set);

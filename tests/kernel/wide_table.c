@@ -96,7 +96,8 @@ static void sample_pair(float *out, fl_sampler kind, uint32_t seed, const uint32
     for (size_t i = 0; i < n; i += FL_W) {
         fl_wf u, v;
         fl_wu set = fl_wu_set_light(seed, fl_wu_load(path + i), light);
-        fl_wf_sample_pair(kind, seed, fl_wu_load(pixel + i), fl_wu_load(index + i), set, &u, &v);
+        fl_wf_sample_pair(kind, seed, fl_wu_load(pixel + i), fl_wu_load(index + i), set,
+                          WIDE_TABLE_STRATA, &u, &v);
         fl_wf_store(out + i, u);
         fl_wf_store(out + n + i, v);
     }
