@@ -45,6 +45,24 @@ FL_INLINE fl_wu fl_wu_path_child(uint32_t seed, fl_wu path, uint32_t branch)
                            fl_wu_set(branch));
 }
 
+/* With a byte shuffle: nibbles by table, bytes by position; a third of the operations. */
+#if FL_W == 8 && defined(__AVX2__)
+FL_INLINE fl_wu fl_wu_reverse_bits(fl_wu x)
+{
+    const __m256i low = _mm256_set1_epi8(0x0f);
+    const __m256i high_nibble = _mm256_broadcastsi128_si256(
+        _mm_setr_epi8(0x0, (char)0x80, 0x40, (char)0xc0, 0x20, (char)0xa0, 0x60, (char)0xe0, 0x10,
+                      (char)0x90, 0x50, (char)0xd0, 0x30, (char)0xb0, 0x70, (char)0xf0));
+    const __m256i low_nibble = _mm256_broadcastsi128_si256(_mm_setr_epi8(
+        0x0, 0x8, 0x4, 0xc, 0x2, 0xa, 0x6, 0xe, 0x1, 0x9, 0x5, 0xd, 0x3, 0xb, 0x7, 0xf));
+    const __m256i swap = _mm256_broadcastsi128_si256(
+        _mm_setr_epi8(3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12));
+    __m256i bytes = _mm256_shuffle_epi8((__m256i)x, swap);
+    __m256i a = _mm256_shuffle_epi8(high_nibble, _mm256_and_si256(bytes, low));
+    __m256i b = _mm256_shuffle_epi8(low_nibble, _mm256_and_si256(_mm256_srli_epi32(bytes, 4), low));
+    return (fl_wu)_mm256_or_si256(a, b);
+}
+#else
 FL_INLINE fl_wu fl_wu_reverse_bits(fl_wu x)
 {
     x = (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
@@ -53,6 +71,7 @@ FL_INLINE fl_wu fl_wu_reverse_bits(fl_wu x)
     x = (x & 0x00FF00FFu) << 8 | (x >> 8 & 0x00FF00FFu);
     return x << 16 | x >> 16;
 }
+#endif
 
 FL_INLINE fl_wu fl_wu_owen_reversed(fl_wu n, fl_wu seed)
 {
