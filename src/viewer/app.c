@@ -20,6 +20,7 @@
 
 enum {
     RESIZE_QUIET_MS = 100,
+    PAD_POLL_MS = 16,
     RELOAD_QUIET_MS = 100, /* Several files saved together are read once. */
     SNAPSHOT_NUMBER_MAX = 999999,
     NOTES_BYTES = 1024
@@ -367,6 +368,9 @@ static double time_to_sleep(const app *a)
         earlier(a->restart_ms == UINT64_MAX ? UINT64_MAX : restart_from_ms(a), a->reload_ms);
     if (vw_input_is_moving(&session->input))
         until = earlier(until, vw_input_next_tick_ms(&session->input));
+    const vw_platform_ops *ops = a->platform->ops;
+    if (ops->has_pad && !session->state.is_hidden && ops->has_pad(a->platform))
+        until = earlier(until, a->now_ms + PAD_POLL_MS);
     if (session->state.is_mixing)
         until = earlier(until, session->state.mix_until_ms);
     if (vw_state_message(&session->state))

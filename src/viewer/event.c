@@ -60,6 +60,33 @@ static bool is_equal(const char *text, size_t text_bytes, const char *name)
     return true;
 }
 
+static const code_name axis_names[] = {
+    {"LEFT_X", GLFW_GAMEPAD_AXIS_LEFT_X},
+    {"LEFT_Y", GLFW_GAMEPAD_AXIS_LEFT_Y},
+    {"RIGHT_X", GLFW_GAMEPAD_AXIS_RIGHT_X},
+    {"RIGHT_Y", GLFW_GAMEPAD_AXIS_RIGHT_Y},
+    {"LEFT_TRIGGER", GLFW_GAMEPAD_AXIS_LEFT_TRIGGER},
+    {"RIGHT_TRIGGER", GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER},
+};
+
+static const code_name pad_names[] = {
+    {"A", GLFW_GAMEPAD_BUTTON_A},
+    {"B", GLFW_GAMEPAD_BUTTON_B},
+    {"X", GLFW_GAMEPAD_BUTTON_X},
+    {"Y", GLFW_GAMEPAD_BUTTON_Y},
+    {"LEFT_BUMPER", GLFW_GAMEPAD_BUTTON_LEFT_BUMPER},
+    {"RIGHT_BUMPER", GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER},
+    {"BACK", GLFW_GAMEPAD_BUTTON_BACK},
+    {"START", GLFW_GAMEPAD_BUTTON_START},
+    {"GUIDE", GLFW_GAMEPAD_BUTTON_GUIDE},
+    {"LEFT_THUMB", GLFW_GAMEPAD_BUTTON_LEFT_THUMB},
+    {"RIGHT_THUMB", GLFW_GAMEPAD_BUTTON_RIGHT_THUMB},
+    {"DPAD_UP", GLFW_GAMEPAD_BUTTON_DPAD_UP},
+    {"DPAD_RIGHT", GLFW_GAMEPAD_BUTTON_DPAD_RIGHT},
+    {"DPAD_DOWN", GLFW_GAMEPAD_BUTTON_DPAD_DOWN},
+    {"DPAD_LEFT", GLFW_GAMEPAD_BUTTON_DPAD_LEFT},
+};
+
 static void skip_prefix(const char **text, size_t *text_bytes, const char *prefix)
 {
     size_t prefix_bytes = strlen(prefix);
@@ -118,6 +145,26 @@ int vw_key_find(const char *name, size_t name_bytes)
 int vw_button_find(const char *name, size_t name_bytes)
 {
     return find_code(button_names, FL_COUNT_OF(button_names), name, name_bytes, "MOUSE_BUTTON_");
+}
+
+const char *vw_axis_name(int axis)
+{
+    return find_name(axis_names, FL_COUNT_OF(axis_names), axis);
+}
+
+const char *vw_pad_name(int button)
+{
+    return find_name(pad_names, FL_COUNT_OF(pad_names), button);
+}
+
+int vw_axis_find(const char *name, size_t name_bytes)
+{
+    return find_code(axis_names, FL_COUNT_OF(axis_names), name, name_bytes, "GAMEPAD_AXIS_");
+}
+
+int vw_pad_find(const char *name, size_t name_bytes)
+{
+    return find_code(pad_names, FL_COUNT_OF(pad_names), name, name_bytes, "GAMEPAD_BUTTON_");
 }
 
 const char *vw_key_nearest(const char *name, size_t name_bytes)

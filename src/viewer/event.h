@@ -19,6 +19,8 @@ typedef enum vw_event_kind {
     VW_EVENT_PASTE,   /**< Text of the clipboard, in `path`, on one line. */
     VW_EVENT_FOCUS,   /**< The window lost the keyboard: everything held is released. */
     VW_EVENT_ICONIFY, /**< The window became an icon (action GLFW_PRESS), or a window again. */
+    VW_EVENT_AXIS,    /**< A gamepad's stick or trigger: x, -1 to 1, 0 within the dead zone. */
+    VW_EVENT_PAD,     /**< A gamepad's button. */
     VW_EVENT_CLOSE    /**< The user asked the window to close. */
 } vw_event_kind;
 
@@ -43,6 +45,12 @@ const char *vw_button_name(int button);
  * unknown. */
 int vw_key_find(const char *name, size_t name_bytes);
 int vw_button_find(const char *name, size_t name_bytes);
+
+/** The same of a gamepad's axes and buttons: "LEFT_X", "RIGHT_TRIGGER"; "A", "DPAD_UP". */
+const char *vw_axis_name(int axis);
+const char *vw_pad_name(int button);
+int vw_axis_find(const char *name, size_t name_bytes);
+int vw_pad_find(const char *name, size_t name_bytes);
 
 /** The known names nearest to a misspelt one, or NULL. Static text. */
 const char *vw_key_nearest(const char *name, size_t name_bytes);

@@ -52,6 +52,77 @@ static vw_dirty move(vw_input *input, vw_state *state, int key)
     return run(input, state, command, VW_BIND_HOLD, (vw_amount){factor / VW_TICKS_PER_SECOND, 0.0});
 }
 
+const vw_pad_binding vw_pad_bindings[] = {
+    {true, GLFW_GAMEPAD_AXIS_LEFT_X, "strafe", 1.0, 0.0},
+    {true, GLFW_GAMEPAD_AXIS_LEFT_Y, "forward", -1.0, 0.0},
+    {true, GLFW_GAMEPAD_AXIS_RIGHT_X, "look", 1.0, 0.0},
+    {true, GLFW_GAMEPAD_AXIS_RIGHT_Y, "look", 0.0, 1.0},
+    {true, GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER, "rise", 1.0, 0.0},
+    {true, GLFW_GAMEPAD_AXIS_LEFT_TRIGGER, "rise", -1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_A, "focus-at", 0.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_B, "undo", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_X, "lens", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_Y, "assist", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, "aperture", -1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, "aperture", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_DPAD_LEFT, "focus", -1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_DPAD_RIGHT, "focus", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_DPAD_UP, "exposure", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_DPAD_DOWN, "exposure", -1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_START, "pause", 1.0, 0.0},
+    {false, GLFW_GAMEPAD_BUTTON_BACK, "reset", 1.0, 0.0},
+    {false, 0, NULL, 0.0, 0.0},
+};
+
+/* One step of the sticks: gently near the middle, by the square. */
+static vw_dirty move_sticks(vw_input *input, vw_state *state)
+{
+    unsigned dirty = VW_DIRTY_NONE;
+    double speed = (input->is_pad_fast ? FAST_FACTOR : 1.0) *
+                   (input->is_pad_slow ? SLOW_FACTOR : 1.0) / VW_TICKS_PER_SECOND;
+    for (const vw_pad_binding *b = vw_pad_bindings; b->command; b++) {
+        double value = b->is_axis ? input->axes[b->code] : 0.0;
+        if (value == 0.0)
+            continue;
+        const vw_command *command = vw_command_named(b->command);
+        bool is_look = command->bindings[0].kind == VW_BIND_DRAG;
+        double step = value * fabs(value) * speed * (is_look ? (double)state->picture_height : 1.0);
+        dirty |= run(input, state, command, VW_BIND_HOLD, (vw_amount){b->x * step, b->y * step});
+    }
+    return (vw_dirty)dirty;
+}
+
+static vw_dirty axis_event(vw_input *input, const vw_event *event)
+{
+    if (event->code < 0 || event->code >= VW_AXIS_COUNT)
+        return VW_DIRTY_NONE;
+    input->axis_count -= input->axes[event->code] != 0.0;
+    input->axes[event->code] = fl_clamp(event->x, -1.0, 1.0);
+    input->axis_count += input->axes[event->code] != 0.0;
+    return VW_DIRTY_NONE;
+}
+
+static vw_dirty pad_event(vw_input *input, vw_state *state, const vw_event *event)
+{
+    bool is_down = event->action == GLFW_PRESS;
+    if (event->code == GLFW_GAMEPAD_BUTTON_LEFT_THUMB)
+        input->is_pad_fast = is_down;
+    if (event->code == GLFW_GAMEPAD_BUTTON_RIGHT_THUMB)
+        input->is_pad_slow = is_down;
+    for (const vw_pad_binding *b = vw_pad_bindings; b->command && is_down; b++) {
+        if (b->is_axis || b->code != event->code)
+            continue;
+        const vw_command *command = vw_command_named(b->command);
+        /* What a mouse points at, a gamepad has in the middle. */
+        vw_amount amount = {b->x, b->y};
+        if (command->bindings[0].kind == VW_BIND_CLICK)
+            amount = (vw_amount){(double)state->picture_width / 2.0,
+                                 (double)state->picture_height / 2.0};
+        return run(input, state, command, VW_BIND_PRESS, amount);
+    }
+    return VW_DIRTY_NONE;
+}
+
 vw_dirty vw_input_advance(vw_input *input, vw_state *state, uint64_t ms)
 {
     uint64_t until = ms * VW_TICKS_PER_SECOND / 1000;
@@ -64,6 +135,8 @@ vw_dirty vw_input_advance(vw_input *input, vw_state *state, uint64_t ms)
         if (state->rack_left > 0)
             dirty |= vw_state_rack_step(state);
         input->is_racking = state->rack_left > 0;
+        if (input->axis_count > 0)
+            dirty |= move_sticks(input, state);
         for (int key = 0; key < VW_KEY_COUNT; key++) {
             if (input->is_held[key]) {
                 dirty |= move(input, state, key);
@@ -196,6 +269,9 @@ static vw_dirty release_all(vw_input *input, vw_state *state)
     input->held_count = 0;
     input->held_mods = 0;
     input->drag = NULL;
+    memset(input->axes, 0, sizeof input->axes);
+    input->axis_count = 0;
+    input->is_pad_fast = input->is_pad_slow = false;
     return end_while(input, state);
 }
 
@@ -221,6 +297,12 @@ vw_dirty vw_input_event(vw_input *input, vw_state *state, const vw_event *event,
     case VW_EVENT_RESIZE:
         dirty |= vw_state_resize(state, event->width, event->height);
         break;
+    case VW_EVENT_AXIS:
+        dirty |= axis_event(input, event);
+        break;
+    case VW_EVENT_PAD:
+        dirty |= pad_event(input, state, event);
+        break;
     case VW_EVENT_ICONIFY:
         state->is_hidden = event->action == GLFW_PRESS;
         dirty |= VW_DIRTY_LIMITS;
@@ -237,7 +319,7 @@ vw_dirty vw_input_event(vw_input *input, vw_state *state, const vw_event *event,
 
 bool vw_input_is_moving(const vw_input *input)
 {
-    return input->held_count > 0 || input->is_racking;
+    return input->held_count > 0 || input->axis_count > 0 || input->is_racking;
 }
 
 uint64_t vw_input_next_tick_ms(const vw_input *input)

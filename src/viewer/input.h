@@ -10,7 +10,7 @@
 #include "viewer/command.h"
 #include "viewer/event.h"
 
-enum { VW_TICKS_PER_SECOND = 60, VW_KEY_COUNT = 512, VW_BUTTON_COUNT = 8 };
+enum { VW_TICKS_PER_SECOND = 60, VW_KEY_COUNT = 512, VW_BUTTON_COUNT = 8, VW_AXIS_COUNT = 6 };
 
 /** Zero-initialise. */
 typedef struct vw_input {
@@ -21,6 +21,9 @@ typedef struct vw_input {
     uint32_t held_count;
     const vw_command *while_on; /**< The command of a key that is down, with the key; NULL: none. */
     int while_key;
+    double axes[VW_AXIS_COUNT]; /**< Of a gamepad. */
+    uint32_t axis_count;        /**< Not at rest. */
+    bool is_pad_fast, is_pad_slow;
     bool is_racking;        /**< The focus is on its way by itself. */
     const vw_command *last; /**< What changed the state last, and how it was reached. */
     vw_binding_kind last_kind;
@@ -29,6 +32,15 @@ typedef struct vw_input {
     const vw_command *drag;    /**< The drag that is on, with its button; NULL: none. */
     int drag_button;
 } vw_input;
+
+/** What a gamepad does: a row for each axis that moves and each button. Ends with command NULL. */
+typedef struct vw_pad_binding {
+    bool is_axis;
+    int code;
+    const char *command;
+    double x, y; /**< Axis: amount at full deflection, a second (look: in picture heights). */
+} vw_pad_binding;
+extern const vw_pad_binding vw_pad_bindings[];
 
 /** Run the clock up to `ms` (log time, never backwards): motion of held keys. Sets state->now_ms.
  */

@@ -203,6 +203,32 @@ static bool parse_button(reader *r, vw_log_entry *entry)
     return read_action(r, false, &entry->event.action) && read_mods(r, &entry->event.mods);
 }
 
+static bool parse_axis(reader *r, vw_log_entry *entry)
+{
+    word w = next_word(r);
+    entry->event.kind = VW_EVENT_AXIS;
+    entry->event.code = vw_axis_find(w.text, w.bytes);
+    if (entry->event.code < 0)
+        return unknown_name(r, w, "axis", NULL);
+    skip_blanks(r);
+    word value = {r->at, (size_t)(r->end - r->at)};
+    if (!read_number(r, "the axis", &entry->event.x))
+        return false;
+    if (fabs(entry->event.x) > 1.0)
+        return fl_error(r->diags, loc_at(r, value.text, value.bytes), "the axis must be -1 to 1");
+    return read_end(r);
+}
+
+static bool parse_pad(reader *r, vw_log_entry *entry)
+{
+    word w = next_word(r);
+    entry->event.kind = VW_EVENT_PAD;
+    entry->event.code = vw_pad_find(w.text, w.bytes);
+    if (entry->event.code < 0)
+        return unknown_name(r, w, "gamepad button", NULL);
+    return read_action(r, false, &entry->event.action) && read_end(r);
+}
+
 static bool parse_cursor(reader *r, vw_log_entry *entry)
 {
     entry->event.kind = VW_EVENT_CURSOR;
@@ -292,7 +318,7 @@ static const struct {
     {"scroll", parse_scroll},   {"resize", parse_resize},     {"drop", parse_drop},
     {"focus", parse_focus},     {"snapshot", parse_snapshot}, {"quit", parse_quit},
     {"paste", parse_paste},     {"window", parse_window},     {"iconify", parse_iconify},
-    {"restore", parse_restore},
+    {"restore", parse_restore}, {"axis", parse_axis},         {"pad", parse_pad},
 };
 
 static bool add_entry(reader *r, const vw_log_entry *entry)

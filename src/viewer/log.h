@@ -11,6 +11,8 @@
  *     1000 resize 800 600
  *     1200 drop other.scene
  *     1300 paste --camera '0 1 5  0 0 0  0 1 0  40'
+ *     1350 axis LEFT_Y -0.5
+ *     1360 pad A press
  *     1400 iconify
  *     1450 restore
  *     1500 snapshot out.png 16

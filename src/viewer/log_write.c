@@ -69,6 +69,12 @@ void vw_log_write_event(FILE *file, uint64_t ms, const vw_event *event)
     case VW_EVENT_FOCUS:
         fprintf(file, "%llu focus lost", at);
         break;
+    case VW_EVENT_AXIS:
+        fprintf(file, "%llu axis %s %s", at, vw_axis_name(event->code), x);
+        break;
+    case VW_EVENT_PAD:
+        fprintf(file, "%llu pad %s %s", at, vw_pad_name(event->code), action_name(event->action));
+        break;
     case VW_EVENT_ICONIFY:
         fprintf(file, "%llu %s", at, event->action == GLFW_PRESS ? "iconify" : "restore");
         break;

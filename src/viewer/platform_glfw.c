@@ -15,7 +15,11 @@
 typedef struct platform_glfw {
     vw_platform base;
     GLFWwindow *window;
+    GLFWgamepadstate pad; /* As last told. */
 } platform_glfw;
+
+#define DEAD_ZONE  0.15
+#define AXIS_STEPS 32.0 /* Finer than a thumb, and logs stay small. */
 
 enum { MODS = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER };
 
@@ -132,6 +136,49 @@ static void destroy(vw_platform *platform)
     free(self);
 }
 
+/* -1 to 1 with a dead zone about rest, or 0 to 1 for triggers, which rest at -1. */
+static float axis_value(int axis, float raw)
+{
+    bool is_trigger =
+        axis == GLFW_GAMEPAD_AXIS_LEFT_TRIGGER || axis == GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER;
+    double value = is_trigger ? ((double)raw + 1.0) / 2.0 : (double)raw;
+    double size = fl_clamp((fabs(value) - DEAD_ZONE) / (1.0 - DEAD_ZONE), 0.0, 1.0);
+    return (float)(copysign(floor(size * AXIS_STEPS + 0.5), value) / AXIS_STEPS);
+}
+
+/* Of the first gamepad; without one everything is at rest. */
+static void poll_pad(platform_glfw *self)
+{
+    GLFWgamepadstate now = {0}, raw;
+    for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; id++) {
+        if (!glfwGetGamepadState(id, &raw))
+            continue;
+        memcpy(now.buttons, raw.buttons, sizeof now.buttons);
+        for (int axis = 0; axis <= GLFW_GAMEPAD_AXIS_LAST; axis++)
+            now.axes[axis] = axis_value(axis, raw.axes[axis]);
+        break;
+    }
+    for (int axis = 0; axis <= GLFW_GAMEPAD_AXIS_LAST; axis++)
+        if (now.axes[axis] != self->pad.axes[axis])
+            push(self->window, &(vw_event){.kind = VW_EVENT_AXIS,
+                                           .code = axis,
+                                           .x = (double)now.axes[axis] + 0.0});
+    for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; button++)
+        if (now.buttons[button] != self->pad.buttons[button])
+            push(self->window,
+                 &(vw_event){.kind = VW_EVENT_PAD, .code = button, .action = now.buttons[button]});
+    self->pad = now;
+}
+
+static bool has_pad(vw_platform *platform)
+{
+    (void)platform;
+    for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; id++)
+        if (glfwJoystickIsGamepad(id))
+            return true;
+    return false;
+}
+
 static void pump(vw_platform *platform, double timeout_s)
 {
     if (timeout_s == 0.0 || platform->events.count > 0)
@@ -140,6 +187,8 @@ static void pump(vw_platform *platform, double timeout_s)
         glfwWaitEvents();
     else
         glfwWaitEventsTimeout(timeout_s);
+    if (glfwGetWindowAttrib(((platform_glfw *)platform)->window, GLFW_FOCUSED))
+        poll_pad((platform_glfw *)platform);
 }
 
 static void wake(vw_platform *platform)
@@ -208,6 +257,7 @@ static const vw_platform_ops ops = {
     .set_clipboard = set_clipboard,
     .set_title = set_title,
     .key_label = key_label,
+    .has_pad = has_pad,
 };
 
 /* The largest size of the wanted shape that fits the desktop. */

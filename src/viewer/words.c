@@ -8,6 +8,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "viewer/input.h"
 #include "viewer/viewer.h"
 
 typedef struct buffer {
@@ -343,6 +344,12 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
         "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
         "saved.\n");
+    add(&b, "\n## Gamepad\n\n| input | command |\n|---|---|\n");
+    for (const vw_pad_binding *p = vw_pad_bindings; p->command; p++)
+        add(&b, "| `%s` | %s |\n", p->is_axis ? vw_axis_name(p->code) : vw_pad_name(p->code),
+            p->command);
+    add(&b, "\nA pressed left stick is fast, the right one slow; A focuses at the middle of the "
+            "picture. The pad is asked 60 times a\nsecond, only while one is connected.\n");
     add(&b,
         "\n## Other keys\n\n`$XDG_CONFIG_HOME/firstlight/keys` (`~/.config/firstlight/keys`), or "
         "the file of `--keys`, binds commands to other\nchords, in the order of the tables above; "

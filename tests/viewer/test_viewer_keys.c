@@ -5,6 +5,8 @@
  */
 #include "viewer_kit.h"
 
+#include <math.h>
+
 #include "viewer/keymap.h"
 #include "viewer/words.h"
 
@@ -111,6 +113,70 @@ static void keys_do_what_the_file_says(void **unused)
     }
 }
 
+static void a_gamepad_flies(void **unused)
+{
+    (void)unused;
+    for (const vw_pad_binding *b = vw_pad_bindings; b->command; b++) {
+        assert_non_null(vw_command_named(b->command));
+        for (const vw_pad_binding *other = b + 1; other->command; other++)
+            assert_false(other->is_axis == b->is_axis && other->code == b->code);
+    }
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    fl_camera before = session.state.look.camera;
+    vw_event stick = {.kind = VW_EVENT_AXIS, .code = GLFW_GAMEPAD_AXIS_LEFT_Y, .x = -1.0};
+    send(&session, &stick, 1000);
+    assert_true(vw_input_is_moving(&session.input));
+    vw_input_advance(&session.input, &session.state, 2000);
+    /* A stick that is pushed as far as it goes flies as the key does. */
+    fl_vec3 by_stick = session.state.look.camera.center;
+    stick.x = 0.0;
+    send(&session, &stick, 2000);
+    assert_false(vw_input_is_moving(&session.input));
+    session.state.look.camera = before;
+    vw_event key = {.kind = VW_EVENT_KEY, .code = GLFW_KEY_W, .action = GLFW_PRESS};
+    send(&session, &key, 3000);
+    key.action = GLFW_RELEASE;
+    send(&session, &key, 4000);
+    assert_true(fl_v3_length(fl_v3_sub(by_stick, session.state.look.camera.center)) < 1e-12);
+    assert_true(by_stick.z < before.center.z);
+    /* Half way is a quarter as fast, pressed it is four times as fast. */
+    for (int i = 0; i < 2; i++) {
+        session.state.look.camera = before;
+        vw_event thumb = {.kind = VW_EVENT_PAD,
+                          .code = GLFW_GAMEPAD_BUTTON_LEFT_THUMB,
+                          .action = i ? GLFW_PRESS : GLFW_RELEASE};
+        send(&session, &thumb, 5000 + 2000 * (uint64_t)i);
+        stick.x = -0.5;
+        send(&session, &stick, 5000 + 2000 * (uint64_t)i);
+        stick.x = 0.0;
+        send(&session, &stick, 6000 + 2000 * (uint64_t)i);
+        double part =
+            (before.center.z - session.state.look.camera.center.z) / (before.center.z - by_stick.z);
+        assert_true(fabs(part - (i ? 1.0 : 0.25)) < 1e-9);
+    }
+    /* The right stick turns to where it points. */
+    session.state.look.camera = before;
+    stick = (vw_event){.kind = VW_EVENT_AXIS, .code = GLFW_GAMEPAD_AXIS_RIGHT_X, .x = 1.0};
+    send(&session, &stick, 9000);
+    vw_event lost = {.kind = VW_EVENT_FOCUS};
+    send(&session, &lost, 9500);
+    assert_true(session.state.look.camera.direction.x > 0.1);
+    assert_false(vw_input_is_moving(&session.input));
+    /* A focuses on the middle, B takes it back. */
+    double focus = session.state.look.camera.focus;
+    vw_event button = {.kind = VW_EVENT_PAD, .code = GLFW_GAMEPAD_BUTTON_A, .action = GLFW_PRESS};
+    session.state.look.camera = before;
+    send(&session, &lost, 20000);
+    send(&session, &button, 21000);
+    assert_true(session.state.look.camera.focus != focus);
+    button.code = GLFW_GAMEPAD_BUTTON_B;
+    send(&session, &button, 22000);
+    assert_true(session.state.look.camera.focus == focus);
+    vw_session_close(&session);
+}
+
 static int finish(void **unused)
 {
     (void)unused;
@@ -123,6 +189,7 @@ int main(void)
         cmocka_unit_test(errors_stand_at_their_place),
         cmocka_unit_test(no_chord_reaches_two_commands),
         cmocka_unit_test(keys_do_what_the_file_says),
+        cmocka_unit_test(a_gamepad_flies),
     };
     return cmocka_run_group_tests(tests, make_folder, finish);
 }

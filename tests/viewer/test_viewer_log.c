@@ -47,6 +47,9 @@ static const struct {
     {HEAD "1 cursor nan 4\n", 2, 10, "the cursor's x must be"},
     {HEAD "1 scroll 0 1e9\n", 2, 12, "the scroll's y must be"},
     {HEAD "1 resize 0 10\n", 2, 10, "the width must be 1 to 16384, got 0"},
+    {HEAD "1 axis LEFT_Q 1\n", 2, 8, "unknown axis 'LEFT_Q'"},
+    {HEAD "1 axis LEFT_X 1.5\n", 2, 15, "the axis must be -1 to 1"},
+    {HEAD "1 pad START repeat\n", 2, 13, "expected press or release"},
     {HEAD "1 drop\n", 2, 7, "expected a file"},
     {HEAD "1 snapshot out.png\n", 2, 12, "expected a file and a number of samples"},
     {HEAD "1 snapshot out.png 0\n", 2, 20, "the number of samples must be 1"},
@@ -120,6 +123,8 @@ static void what_is_written_reads_back(void **unused)
         {.kind = VW_EVENT_RESIZE, .width = 1, .height = 16384},
         {.kind = VW_EVENT_DROP, .path = "/some where/b.scene"},
         {.kind = VW_EVENT_FOCUS},
+        {.kind = VW_EVENT_AXIS, .code = GLFW_GAMEPAD_AXIS_LEFT_Y, .x = -0.53125},
+        {.kind = VW_EVENT_PAD, .code = GLFW_GAMEPAD_BUTTON_DPAD_UP, .action = GLFW_PRESS},
         {.kind = VW_EVENT_ICONIFY, .action = GLFW_PRESS},
         {.kind = VW_EVENT_ICONIFY, .action = GLFW_RELEASE},
     };
