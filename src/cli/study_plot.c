@@ -25,6 +25,11 @@ static const char *const knob_colors[STUDY_KNOB_COUNT] = {
     [STUDY_DEPTH] = "#2a8d4a",    [STUDY_WEIGHT] = "#8a4fd0",  [STUDY_SCALE] = "#d62839",
     [STUDY_ACCEL] = "#8d6e63",    [STUDY_SOLVER] = "#d05fae"};
 
+static const char *knob_color(study_knob knob)
+{
+    return knob_colors[knob] ? knob_colors[knob] : "#17a2b8";
+}
+
 /* Of the values of one knob, in the order of the plan. */
 static const char *const value_colors[] = {"#440154", "#3b528b", "#21918c", "#3fa34d",
                                            "#b59f00", "#d95f02", "#b2182b", "#7f7f7f"};
@@ -275,7 +280,7 @@ static void print_front(FILE *file, const study_report *report, const char *name
         study_knob knob = s->plan.configs[curves[i].config].knob;
         fprintf(file, "$c%u using %d:%d with linespoints pt 7 ps 0.3 lw %s lc rgb '%s' ",
                 curves[i].config, c, ERROR, knob == STUDY_BASELINE ? "2.6" : "0.8",
-                knob_colors[knob]);
+                knob_color(knob));
         if (seen >> knob & 1u)
             fputs("notitle, \\\n  ", file);
         else
