@@ -112,6 +112,8 @@ static void print_axis(FILE *file, char axis, span s, column c)
         }
         value *= c == SAMPLES ? 2.0 : is_long ? 10.0 : steps[step % 3];
     }
+    if (is_first) /* A short axis between two of them. */
+        fprintf(file, "'%.2g' %.6g", sqrt(s.lo * s.hi), sqrt(s.lo * s.hi));
     fputs(")\n", file);
 }
 
@@ -247,8 +249,8 @@ static void print_front_names(FILE *file, const study_report *report, span x, sp
     double above = 2.0;
     for (uint32_t i = 0; i < report->table->front_count; i++) {
         const study_cell *cell = study_cell_at(report->table, report->table->front[i]);
-        double at = place_in(y, cell->error.value);
-        if (at > above - 0.035)
+        double at = cell->error.value > 0.0 ? place_in(y, cell->error.value) : 2.0;
+        if (at > above - 0.035) /* No error has no place; others lie too close. */
             continue;
         above = at;
         char name[96];

@@ -151,6 +151,14 @@ static bool add_to_sum(study *s, study_sum *sum, const float *picture, const flo
     return true;
 }
 
+/* What biased configurations will be held against: the baseline's picture, in scratch[0]. */
+static void keep_base(study *s, uint32_t level)
+{
+    if (s->base_pictures[level])
+        memcpy(s->base_pictures[level], s->scratch[0],
+               (size_t)3 * s->width * s->height * sizeof(float));
+}
+
 /* The last picture of a curve, in scratch[0]. */
 static bool add_last(study *s, uint32_t index)
 {
@@ -159,12 +167,11 @@ static bool add_last(study *s, uint32_t index)
     const study_reference *truth = study_truth(s);
     if (!add_to_sum(s, &s->pictures[index], picture, truth->rgb[0], truth->rgb[1]))
         return false;
-    if (index == 0)
-        memcpy(s->base_picture, picture, floats * sizeof *picture);
     if (!s->plan.configs[index].is_biased)
         return true;
+    const float *base = s->base_pictures[study_levels_of(&s->plan.configs[index]) - 1];
     for (size_t i = 0; i < floats; i++)
-        picture[i] -= s->base_picture[i];
+        picture[i] -= base[i];
     return add_to_sum(s, &s->differences[index], picture, s->shift[0], s->shift[1]);
 }
 
@@ -226,6 +233,8 @@ static study_outcome run_curve(study *s, uint32_t index, uint32_t round)
             continue;
         }
         *slot(s, index, round, level) = m;
+        if (index == 0)
+            keep_base(s, level);
         if (level + 1 == study_levels_of(config) && !add_last(s, index))
             return STUDY_FAILED;
     }
@@ -275,10 +284,14 @@ static bool allocate(study *s)
     size_t floats = (size_t)3 * s->width * s->height;
     size_t count = (size_t)s->plan.count * s->settings.repeats * s->levels;
     s->measures = calloc(count, sizeof *s->measures);
-    s->base_picture = malloc(floats * sizeof(float));
     s->shift[0] = calloc(floats, sizeof(float));
     s->shift[1] = calloc(floats, sizeof(float));
-    bool ok = s->measures && s->base_picture && s->shift[0] && s->shift[1];
+    bool ok = s->measures && s->shift[0] && s->shift[1];
+    for (uint32_t i = 0; i < s->plan.count; i++) {
+        uint32_t last = study_levels_of(&s->plan.configs[i]) - 1;
+        if (s->plan.configs[i].is_biased && !s->base_pictures[last])
+            ok = (s->base_pictures[last] = malloc(floats * sizeof(float))) && ok;
+    }
     for (uint32_t i = 0; i < FL_COUNT_OF(s->scratch); i++)
         ok = (s->scratch[i] = malloc(floats * sizeof(float))) && ok;
     return ok || fl_out_of_memory(s->scene->diags, "the study");
@@ -339,7 +352,8 @@ void study_close(study *s)
     }
     study_plan_close(&s->plan);
     free(s->measures);
-    free(s->base_picture);
+    for (uint32_t i = 0; i < STUDY_LEVELS_MAX; i++)
+        free(s->base_pictures[i]);
     free(s->shift[0]);
     free(s->shift[1]);
     for (uint32_t i = 0; i < FL_COUNT_OF(s->scratch); i++)

@@ -79,8 +79,10 @@ typedef struct study {
     /** The same minus the baseline's of the round, of biased configurations: the noise that both
      * have in common is gone. mse: against deep minus own. */
     study_sum differences[STUDY_CONFIGS_MAX];
-    float *base_picture; /**< The baseline's last, of this round. */
-    float *shift[2];     /**< Deep minus own reference: what the baseline lacks. */
+    /** The baseline's of this round, of the levels at which a biased configuration ends; else NULL.
+     */
+    float *base_pictures[STUDY_LEVELS_MAX];
+    float *shift[2]; /**< Deep minus own reference: what the baseline lacks. */
     bool was_interrupted, ran_out_of_budget;
     double begin_s, seconds;
     double load;      /**< Load average when the study began; below 0: not known. */

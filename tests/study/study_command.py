@@ -111,11 +111,20 @@ def nowhere(folder):
     expect(done.returncode == 4 and "no/where" in done.stderr, "a missing folder is said at once")
 
 
+def noiseless(folder):
+    """A scene without any error still has its page and plots."""
+    out = os.path.join(folder, "noiseless")
+    done = subprocess.run(command("furnace.txt", out, "--size", "16x16", "--samples", "8", "--repeats", "2", "--quiet"),
+                          stderr=subprocess.PIPE, text=True)
+    expect(done.returncode == 0 and done.stderr == "", "a scene without noise is no trouble for the plots")
+
+
 def main():
     with tempfile.TemporaryDirectory() as folder:
         repeats(folder)
         interrupted(folder)
         out_of_budget(folder)
+        noiseless(folder)
         nowhere(folder)
     sys.exit(1 if failures else 0)
 
