@@ -144,9 +144,13 @@ static bool add_to_sum(study *s, study_sum *sum, const float *picture, const flo
         sum->rgb = calloc(3 * pixels, sizeof(float));
     if (!sum->rgb)
         return fl_out_of_memory(s->scene->diags, "the pictures");
-    for (size_t i = 0; i < 3 * pixels; i++)
+    double square = 0.0;
+    for (size_t i = 0; i < 3 * pixels; i++) {
         sum->rgb[i] += picture[i];
+        square += (double)picture[i] * (double)picture[i];
+    }
     sum->count++;
+    sum->square += square / (3.0 * (double)pixels);
     sum->mse += study_product_mse(picture, reference1, reference2, pixels);
     return true;
 }

@@ -62,7 +62,8 @@ typedef struct study_stage {
 typedef struct study_sum {
     float *rgb; /**< Full size; NULL: none. */
     uint32_t count;
-    double mse; /**< Sum of study_product_mse. */
+    double mse;    /**< Sum of study_product_mse. */
+    double square; /**< Sum of mean squares. */
 } study_sum;
 
 typedef struct study {

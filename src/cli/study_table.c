@@ -151,6 +151,20 @@ static double pair_floor(const study *s, uint32_t config)
                                             (size_t)s->width * s->height)));
 }
 
+/* Differences d of two rounds have in common what the limits differ by: mean of d d' over pairs. */
+static double pair_distance(const study *s, uint32_t config)
+{
+    const study_sum *d = &s->differences[config];
+    size_t floats = (size_t)3 * s->width * s->height;
+    double square = 0.0;
+    if (d->count < 2)
+        return (double)NAN;
+    for (size_t i = 0; i < floats; i++)
+        square += (double)d->rgb[i] * (double)d->rgb[i];
+    double pairs = (double)d->count * (d->count - 1);
+    return sqrt(fl_max(0.0, (square / (double)floats - d->square) / pairs));
+}
+
 /* The baseline first: its rate is that of all fits with a floor. */
 static void fill_column(const study *s, uint32_t config, double base_rate, study_column *column)
 {
@@ -172,6 +186,7 @@ static void fill_column(const study *s, uint32_t config, double base_rate, study
                             : study_fit_rate(samples, mse, count);
     column->slope = study_slope_of(samples + first, rmse + first, count - first);
     column->floor = pair_floor(s, config);
+    column->apart = pair_distance(s, config);
 }
 
 static bool dominates(const study_cell *a, const study_cell *b)

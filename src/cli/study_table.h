@@ -27,7 +27,9 @@ typedef struct study_column {
     study_cell cells[STUDY_LEVELS_MAX];
     study_fit fit; /**< Biased: of `error`, with a floor; else of `noise`, without. */
     double floor;  /**< Of biased ones and the baseline: by pairs of rounds; NaN: not known. */
-    double slope;  /**< Of `noise` (biased: `error`), from 16 samples (else from 1) on; NaN. */
+    double
+        apart; /**< Biased: RMSE between its limit and the baseline's, by pairs of rounds; NaN. */
+    double slope; /**< Of `noise` (biased: `error`), from 16 samples (else from 1) on; NaN. */
 } study_column;
 
 typedef struct study_place {

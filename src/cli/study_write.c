@@ -142,12 +142,13 @@ static json_t *json_config(const study *s, const study_table *table, uint32_t in
         if (column->cells[level].rounds)
             json_array_append_new(cells,
                                   json_cell(&column->cells[level], config->is_biased, index == 0));
-    return json_pack("{s:s, s:s, s:b, s:f, s:{s:o, s:o}, s:o, s:o, s:o}", "name", config->name,
+    return json_pack("{s:s, s:s, s:b, s:f, s:{s:o, s:o}, s:o, s:o, s:o, s:o}", "name", config->name,
                      "knob", study_knob_names[config->knob], "biased", (int)config->is_biased,
                      "build_s", config->compiled->build_seconds, "fit", "floor",
                      real_or_null(column->fit.is_known && config->is_biased, column->fit.floor),
                      "rate", real_or_null(column->fit.is_known, column->fit.rate), "floor",
-                     real_or_null(!isnan(column->floor), column->floor), "slope",
+                     real_or_null(!isnan(column->floor), column->floor), "apart",
+                     real_or_null(!isnan(column->apart), column->apart), "slope",
                      real_or_null(!isnan(column->slope), column->slope), "points", cells);
 }
 

@@ -218,6 +218,7 @@ static void floors_fall_with_depth(void **state)
     }
     const study_column *flat = &l.table->columns[config_called(&l.s, "depth=0")];
     assert_true(fabs(flat->fit.floor / flat->floor - 1.0) < 0.1);
+    assert_true(fabs(flat->apart / flat->floor - 1.0) < 0.1);
     assert_true(before < 0.1 * flat->floor);
     lab_end(&l);
 }
