@@ -13,10 +13,10 @@ enum {
 };
 
 const char *const study_knob_names[STUDY_KNOB_COUNT] = {
-    "baseline",         "sampler", "light-samples", "depth",
-    "weight-threshold", "scale",   "accel",         "revolve-solver"};
+    "baseline", "sampler", "light-samples",  "depth",   "weight-threshold",
+    "scale",    "accel",   "revolve-solver", "adaptive"};
 
-static const char *const sampler_names[] = {"sobol", "random", "padded"};
+static const char *const sampler_names[] = {"sobol", "random", "padded", "stratified"};
 static const char *const accel_names[] = {"bvh", "octree", "none"};
 
 bool study_knobs_parse(const char *text, uint32_t *out_knobs, char word[STUDY_NAME_BYTES])
@@ -191,6 +191,15 @@ static void add_solvers(study_plan *plan, uint32_t samples_max)
     }
 }
 
+/* Where samples go follows what was seen: right in the limit only. */
+static void add_adaptive(study_plan *plan)
+{
+    bool is_on = plan->configs[0].params.is_adaptive;
+    study_config *c = add(plan, STUDY_ADAPTIVE, is_on ? "off" : "on");
+    c->params.is_adaptive = !is_on;
+    c->is_biased = true;
+}
+
 bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_max,
                       uint32_t threads, study_plan *out_plan)
 {
@@ -212,6 +221,8 @@ bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_m
         add_thresholds(out_plan);
     if ((knobs >> STUDY_SCALE & 1u) && scene->params.crop_w == 0)
         add_scales(out_plan);
+    if (knobs >> STUDY_ADAPTIVE & 1u)
+        add_adaptive(out_plan);
     if ((knobs >> STUDY_SOLVER & 1u) && (needs & FL_NEED_REVOLUTIONS))
         add_solvers(out_plan, samples_max);
     bool has_mesh = needs & FL_NEED_TRIANGLES;
@@ -255,6 +266,9 @@ void study_own_name(const study_plan *plan, study_knob knob, char *out, size_t b
         break;
     case STUDY_SOLVER:
         solver_text(p->solver, text);
+        break;
+    case STUDY_ADAPTIVE:
+        snprintf(text, sizeof text, "%s", p->is_adaptive ? "on" : "off");
         break;
     default:
         snprintf(out, bytes, "as asked for");

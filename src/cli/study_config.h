@@ -17,6 +17,7 @@ typedef enum study_knob {
     STUDY_SCALE,
     STUDY_ACCEL,
     STUDY_SOLVER,
+    STUDY_ADAPTIVE,
     STUDY_KNOB_COUNT
 } study_knob;
 

@@ -21,6 +21,7 @@ static bool reference_open(study *s, const fl_params *params, study_reference *r
         fl_render_options options = {.thread_count = s->settings.threads};
         fl_params p = *params;
         p.sampler = samplers[i];
+        p.is_adaptive = false;
         p.seed = fl_hash_step(params->seed, SEED_REFERENCE + i);
         r->renders[i] = fl_render_create(&options, s->scene->diags);
         r->rgb[i] = malloc((size_t)3 * s->width * s->height * sizeof(float));

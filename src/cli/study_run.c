@@ -209,6 +209,13 @@ static void note_best(study *s, const study_config *config, const study_measure 
         s->own.best = fl_min(s->own.best, sqrt(m->noise.mse));
 }
 
+static bool begin(study *s, const study_config *config, const fl_params *params)
+{
+    fl_render_set_paused(s->render, false);
+    fl_render_set_limits(s->render, &(fl_render_limits){.samples = 1});
+    return fl_render_restart(s->render, config->compiled, params, s->scene->diags);
+}
+
 /* One curve. round: settings.repeats stands for the warm-up, which is measured for the references'
  * sake only. */
 static study_outcome run_curve(study *s, uint32_t index, uint32_t round)
@@ -217,13 +224,16 @@ static study_outcome run_curve(study *s, uint32_t index, uint32_t round)
     bool is_warm_up = round == s->settings.repeats;
     fl_params params = config->params;
     params.seed = fl_hash_step(params.seed, is_warm_up ? SEED_WARM_UP : round);
-    fl_render_set_paused(s->render, false);
-    fl_render_set_limits(s->render, &(fl_render_limits){.samples = 1});
-    if (!fl_render_restart(s->render, config->compiled, &params, s->scene->diags))
+    params.strata = 1;
+    if (!begin(s, config, &params))
         return STUDY_FAILED;
     double load = study_load_average();
     for (uint32_t level = 0; level < study_levels_of(config); level++) {
         fl_progress p;
+        /* Strata have to know how many samples there will be: a picture of its own for each. */
+        params.strata = 1u << level;
+        if (level && params.sampler == FL_SAMPLER_STRATIFIED && !begin(s, config, &params))
+            return STUDY_FAILED;
         study_outcome o = study_render_to(s, s->render, 1u << level, STUDY_WHOLE_BUDGET, &p);
         if (o != STUDY_REACHED)
             return o;
