@@ -292,9 +292,52 @@ static void textures_are_read_alike(void **state)
     }
 }
 
+/* What a scene does not use has no arrays: of the ray tree, of roots of surfaces of revolution, of
+ * transparent shadows. */
+static void unused_features_take_no_memory(void **state)
+{
+    (void)state;
+    static fl_vec3 points[4] = {{1, -1, 0}, {1, -0.3, 0}, {1, 0.3, 0}, {1, 1, 0}};
+    static fl_profile cylinder = {.points = points, .segment_count = 1, .degree = 3};
+    for (int uses = 0; uses < 2; uses++) {
+        world w;
+        world_init(&w);
+        fl_material *m = add_material(&w);
+        m->reflect = gray(uses ? 0.5 : 0);
+        add_sphere(&w, fl_v3(0, 0, 0), 2);
+        add_light(&w, FL_LIGHT_POINT, fl_v3(5, 5, 8), gray(1));
+        w.params.depth_limit = 2;
+        w.params.transparent_shadows = uses;
+        if (uses) {
+            w.scene.profiles = &cylinder;
+            w.scene.profile_count = 1;
+            fl_object *o = add_object(&w, FL_OBJECT_REVOLUTION);
+            o->as.revolution.image = FL_NONE;
+        }
+        fl_frame *frame = world_frame(&w, fl_cpu_best_isa());
+        fl_workspace *work = fl_workspace_create();
+        uint16_t x[256], y[256];
+        for (uint32_t i = 0; i < 256; i++) {
+            x[i] = (uint16_t)(i % 16);
+            y[i] = (uint16_t)(i / 16);
+        }
+        fl_unit unit = {x, y, 256, 0};
+        fl_counts counts = {0};
+        bool out_of_memory;
+        assert_true(fl_pipeline_run(frame, &unit, work, NULL, 0, &counts, &out_of_memory));
+        assert_int_equal(work->next.memory || work->current.memory, uses);
+        assert_int_equal(work->stage.hits.root != NULL, uses);
+        assert_int_equal(work->end.x != NULL, uses);
+        assert_int_equal(counts.reflect_rays > 0, uses);
+        fl_workspace_destroy(work);
+        fl_frame_release(frame);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(unused_features_take_no_memory),
         cmocka_unit_test(textures_are_read_alike),
         cmocka_unit_test(every_instruction_set_gives_the_scalar_bits),
         cmocka_unit_test(specular_needs_both_normals),
