@@ -129,7 +129,7 @@ static void check_scene(checker *check, const char *path)
         if (render->has_samples)
             limits.samples = fl_min_u32(limits.samples, render->samples);
         scene.params.width = scene.params.height = GOLDEN_SIDE;
-        if (cli_picture_render(&scene, &limits, check->options->threads, NULL, 0, &picture) && !picture.was_interrupted) {
+        if (cli_picture_render(&scene, &limits, &(cli_picture_plan){.threads = check->options->threads}, &picture) && !picture.was_interrupted) {
             if (!cli_has(check->options, CLI_OPT_UPDATE)) {
                 compare(check, path, &scene, &picture);
             } else if (write_golden(path, &scene, &picture, &diags)) {

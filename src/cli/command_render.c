@@ -101,8 +101,11 @@ int cli_command_render(const cli_options *options)
                                    .noise_rmse = options->noise,
                                    .seconds = options->time_s};
         bool is_quiet = cli_has(options, CLI_OPT_QUIET);
-        if (cli_picture_render(&scene, &limits, options->threads, is_quiet ? NULL : scene.path, aovs.maps,
-                               &picture)) {
+        cli_picture_plan plan = {.threads = options->threads,
+                                 .progress_name = is_quiet ? NULL : scene.path,
+                                 .maps = aovs.maps,
+                                 .checkpoint = options->checkpoint};
+        if (cli_picture_render(&scene, &limits, &plan, &picture)) {
             bool ok = true;
             for (uint32_t i = 0; i < options->output_count; i++)
                 ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;

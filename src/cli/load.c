@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/load.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -92,6 +93,10 @@ static void apply_options(const cli_options *o, fl_params *params)
     if (cli_has(o, CLI_OPT_SIZE)) {
         params->width = o->size[0];
         params->height = o->size[1];
+    }
+    if (cli_has(o, CLI_OPT_SCALE)) { /* Beyond the largest side: params_check says so. */
+        params->width = (uint32_t)fl_clamp(floor(params->width * o->scale + 0.5), 1.0, 1e9);
+        params->height = (uint32_t)fl_clamp(floor(params->height * o->scale + 0.5), 1.0, 1e9);
     }
     if (cli_has(o, CLI_OPT_CROP)) {
         params->crop_x = o->crop[0];

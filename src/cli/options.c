@@ -43,6 +43,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                        "distance of the sharp plane along the view, or inf"},
     [CLI_OPT_CAMERA] = {"camera", 'c', "'EX EY EZ  LX LY LZ  UX UY UZ  FOV'", CLI_KIND_CAMERA, AT(camera), 0, 0,
                         NULL, LOOKING, "eye, look-at point, up, vertical field of view in degrees"},
+    [CLI_OPT_SCALE] = {"scale", 0, "S", CLI_KIND_NUMBER, AT(scale), 1e-4, 1e4, NULL, BIT(CLI_VIEW) | BIT(CLI_RENDER),
+                       "times the picture's size in pixels: 0.5 renders a quarter of them"},
     [CLI_OPT_CROP] = {"crop", 0, "X,Y,W,H", CLI_KIND_CROP, AT(crop), 0, FL_SIDE_MAX, NULL, BIT(CLI_RENDER),
                       "render this part only; same bytes as in the whole"},
     [CLI_OPT_EXPOSURE] = {"exposure", 'e', "EV", CLI_KIND_NUMBER, AT(exposure_ev), -64, 64, NULL, RENDERING,
@@ -76,6 +78,9 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                          "warn about known slips of course files instead of refusing them"},
     [CLI_OPT_OUTPUT] = {"output", 'o', "FILE", CLI_KIND_OUTPUT, AT(outputs), 0, 0, NULL, BIT(CLI_RENDER),
                         "picture to write: .png .exr .tif .bmp ...; may be repeated"},
+    [CLI_OPT_CHECKPOINT] = {"checkpoint", 0, "FILE", CLI_KIND_TEXT, AT(checkpoint), 0, 0, NULL, BIT(CLI_RENDER),
+                            "go on from this file if it is there, and keep what is rendered in it: now and then, "
+                            "when interrupted and at the end; the bytes are those of a render without a break"},
     [CLI_OPT_AOV] = {"aov", 0, "NAMES", CLI_KIND_TEXT, AT(aov), 0, 0, NULL, BIT(CLI_RENDER),
                      "what stands behind the pixels too: depth,normal,albedo,samples,error,cost as NAME.depth.exr ..."},
     [CLI_OPT_NOISE_SPLIT] = {"noise-split", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_RENDER) | BIT(CLI_INFO),

@@ -33,6 +33,7 @@ typedef enum cli_option_id {
     CLI_OPT_APERTURE,
     CLI_OPT_FOCUS,
     CLI_OPT_CAMERA,
+    CLI_OPT_SCALE,
     CLI_OPT_CROP,
     CLI_OPT_EXPOSURE,
     CLI_OPT_WEIGHT_THRESHOLD,
@@ -49,6 +50,7 @@ typedef enum cli_option_id {
     CLI_OPT_DIALECT_EXACT,
     CLI_OPT_LENIENT,
     CLI_OPT_OUTPUT,
+    CLI_OPT_CHECKPOINT,
     CLI_OPT_AOV,
     CLI_OPT_NOISE_SPLIT,
     CLI_OPT_ADAPTIVE,
@@ -90,12 +92,12 @@ typedef struct cli_options {
     uint64_t given; /**< Bit per cli_option_id. */
     uint32_t size[2], crop[4], pixel[3];
     uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats, revolve_starts;
-    double time_s, budget_s, noise, aperture, focus, exposure_ev, weight_threshold;
+    double time_s, budget_s, noise, scale, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
     uint32_t adaptive, sampler, solver, accel, dialect; /**< Values of the core's enums. */
     const char *outputs[CLI_OUTPUTS_MAX];
     uint32_t output_count;
-    const char *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;
+    const char *checkpoint, *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;
     const char **paths; /**< Arguments that are no options; points into argv. */
     uint32_t path_count;
 } cli_options;

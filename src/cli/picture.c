@@ -6,6 +6,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "io/checkpoint_file.h"
 #include "io/image_file.h"
 
 bool cli_forecast_read(const fl_progress *progress, double target_rmse, cli_forecast *out)
@@ -42,11 +43,51 @@ static void show_progress(const char *name, const fl_progress *progress, const f
     fflush(stderr);
 }
 
-static bool render_until_done(fl_render *render, const fl_render_limits *limits, const char *progress_name,
-                              cli_picture *out)
+/* Where a render is kept meanwhile; path NULL: nowhere. */
+typedef struct checkpoint {
+    const char *path;
+    char key[FL_CHECKPOINT_KEY_BYTES];
+    double next_s; /* When to keep it again, in seconds of rendering. */
+} checkpoint;
+
+/* Seconds of rendering between two checkpoints: what a power cut may cost. */
+static const double keep_every_s = 60.0;
+
+static bool keep(fl_render *render, checkpoint *kept, fl_diags *diags)
 {
-    bool shows = progress_name && isatty(STDERR_FILENO), has_shown = false;
-    while (!fl_render_wait(render, 0.1)) {
+    void *data;
+    size_t bytes;
+    if (!kept->path)
+        return true;
+    bool is_kept = fl_render_checkpoint(render, &data, &bytes, diags) &&
+                   (!data || fl_checkpoint_save(kept->path, kept->key, data, bytes, diags));
+    free(data);
+    return is_kept;
+}
+
+/* Begin, or go on where the checkpoint ends. */
+static bool begin(fl_render *render, cli_scene *scene, checkpoint *kept)
+{
+    char *file = NULL;
+    const void *data = NULL;
+    size_t bytes = 0;
+    if (kept->path && scene->params.is_adaptive)
+        return fl_error(scene->diags, (fl_loc){0}, "a checkpoint cannot keep adaptive sampling: leave out one of the two");
+    if (kept->path && (!fl_checkpoint_key(scene->scene, &scene->params, kept->key, scene->diags) ||
+                         !fl_checkpoint_load(kept->path, kept->key, &file, &data, &bytes, scene->diags)))
+        return false;
+    bool has_begun = data ? fl_render_resume(render, scene->compiled, &scene->params, data, bytes, scene->diags)
+                          : fl_render_restart(render, scene->compiled, &scene->params, scene->diags);
+    free(file);
+    return has_begun;
+}
+
+/* False: out of memory, or after adding an error. */
+static bool render_until_done(fl_render *render, const fl_render_limits *limits, const char *progress_name,
+                              checkpoint *kept, cli_picture *out, fl_diags *diags)
+{
+    bool shows = progress_name && isatty(STDERR_FILENO), has_shown = false, is_kept = true;
+    while (is_kept && !fl_render_wait(render, 0.1)) {
         fl_render_progress(render, &out->progress);
         if (out->progress.state == FL_RENDER_FAILED)
             break;
@@ -59,11 +100,19 @@ static bool render_until_done(fl_render *render, const fl_render_limits *limits,
             show_progress(progress_name, &out->progress, limits);
             has_shown = true;
         }
+        if (kept->path && out->progress.seconds >= kept->next_s) {
+            kept->next_s = out->progress.seconds + keep_every_s;
+            is_kept = keep(render, kept, diags);
+        }
     }
     if (has_shown)
         fputc('\n', stderr);
     fl_render_progress(render, &out->progress);
-    return out->progress.state != FL_RENDER_FAILED;
+    if (out->progress.state == FL_RENDER_FAILED)
+        return fl_out_of_memory(diags, "rendering");
+    if (is_kept)
+        keep(render, kept, diags); /* If it cannot be kept, the picture is still saved. */
+    return true;
 }
 
 /* The maps asked for, one float a pixel. */
@@ -94,20 +143,20 @@ static bool take_picture(fl_render *render, cli_picture *out, fl_diags *diags)
     return true;
 }
 
-bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
-                        const char *progress_name, uint32_t maps, cli_picture *out)
+bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, const cli_picture_plan *plan,
+                        cli_picture *out)
 {
     *out = (cli_picture){0};
-    fl_render_options options = {.thread_count = threads};
+    fl_render_options options = {.thread_count = plan->threads};
     fl_render *render = fl_render_create(&options, scene->diags);
     if (!render)
         return false;
     fl_render_set_limits(render, limits);
-    bool ok = fl_render_restart(render, scene->compiled, &scene->params, scene->diags);
-    if (ok && !render_until_done(render, limits, progress_name, out))
-        ok = fl_out_of_memory(scene->diags, "rendering");
+    checkpoint kept = {.path = plan->checkpoint, .next_s = keep_every_s};
+    bool ok = begin(render, scene, &kept) &&
+              render_until_done(render, limits, plan->progress_name, &kept, out, scene->diags);
     if (ok)
-        ok = take_picture(render, out, scene->diags) && take_maps(render, maps, out, scene->diags);
+        ok = take_picture(render, out, scene->diags) && take_maps(render, plan->maps, out, scene->diags);
     fl_render_destroy(render);
     if (!ok)
         cli_picture_close(out);

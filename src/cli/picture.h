@@ -20,11 +20,17 @@ typedef struct cli_picture {
     bool was_interrupted;
 } cli_picture;
 
-/** Render with the scene's parameters until `limits` are met or a signal comes. `progress_name`: show progress under
- *  this name when standard error is a terminal, NULL: never. `maps`: bit per fl_render_map to keep. False after adding
- *  an error. */
-bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, uint32_t threads,
-                        const char *progress_name, uint32_t maps, cli_picture *out);
+/** How a picture is rendered besides its limits; zero is the plain way. */
+typedef struct cli_picture_plan {
+    uint32_t threads;
+    const char *progress_name; /**< Show progress under this name when standard error is a terminal; NULL: never. */
+    uint32_t maps;             /**< Bit per fl_render_map to keep. */
+    const char *checkpoint;    /**< File to go on from and to keep the render in; NULL: none. */
+} cli_picture_plan;
+
+/** Render with the scene's parameters until `limits` are met or a signal comes. False after adding an error. */
+bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, const cli_picture_plan *plan,
+                        cli_picture *out);
 
 /** When the error will be `rmse`, in seconds of rendering since the restart. */
 typedef struct cli_forecast {

@@ -377,3 +377,45 @@ bool fl_error_predict(const fl_error_estimate *error, double target_rmse,
     out_forecast->high = fl_max(samples_at(error, target_rmse, EXPONENT_SLOW), samples);
     return true;
 }
+
+/* Sums of a tile at levels that it has not reached are 0, not whatever was there. */
+static void clear_uncaptured(fl_estimate *estimate, const fl_rect *rect, uint32_t begin,
+                             uint32_t end)
+{
+    size_t squares = (size_t)estimate->squares_x * estimate->squares_y;
+    for (uint32_t k = begin; k < end; k++)
+        for (uint32_t sy = rect->y0 / SQUARE_SIDE; sy < squares_along(rect->y1); sy++)
+            for (uint32_t sx = rect->x0 / SQUARE_SIDE; sx < squares_along(rect->x1); sx++)
+                estimate->sums[k * squares + (size_t)sy * estimate->squares_x + sx] = 0.0;
+}
+
+/* Count what the tiles have captured. */
+static void recount(fl_estimate *estimate, const fl_schedule *schedule)
+{
+    size_t squares = (size_t)estimate->squares_x * estimate->squares_y;
+    fl_rect rect;
+    uint32_t samples;
+    for (uint32_t i = 0; fl_schedule_tile(schedule, i, &rect, &samples); i++)
+        for (uint32_t k = 0; k < LEVELS && samples >> k; k++)
+            estimate->levels[k].captured_pixels +=
+                (uint64_t)(rect.x1 - rect.x0) * (rect.y1 - rect.y0);
+    for (uint32_t k = 0; k < LEVELS; k++)
+        if (estimate->levels[k].captured_pixels == (uint64_t)estimate->width * estimate->height)
+            reduce(estimate, estimate->sums + k * squares, &estimate->levels[k]);
+}
+
+void fl_estimate_pack(fl_estimate *estimate, const fl_schedule *schedule, fl_pack *pack)
+{
+    size_t squares = (size_t)estimate->squares_x * estimate->squares_y;
+    size_t pixels = (size_t)estimate->width * estimate->height;
+    fl_rect rect;
+    uint32_t samples, levels = 0;
+    for (uint32_t i = 0; fl_schedule_tile(schedule, i, &rect, &samples); i++)
+        levels = fl_max_u32(levels, floor_log2(samples) + 1);
+    for (uint32_t i = 0; fl_schedule_tile(schedule, i, &rect, &samples); i++)
+        clear_uncaptured(estimate, &rect, floor_log2(samples) + 1, levels);
+    fl_pack_bytes(pack, estimate->snapshot, pixels * 3 * sizeof *estimate->snapshot);
+    fl_pack_bytes(pack, estimate->sums, levels * squares * sizeof *estimate->sums);
+    if (pack->mode == FL_PACK_READ && !pack->has_failed)
+        recount(estimate, schedule);
+}

@@ -73,4 +73,8 @@ double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t
  */
 uint32_t fl_estimate_next_stop(const fl_estimate *estimate, uint32_t samples, double target_rmse);
 
+/** Snapshots and sums; reading takes an estimate that was just reset, of a film whose tiles stand as
+ * in `schedule`. O(pixels). */
+void fl_estimate_pack(fl_estimate *estimate, const fl_schedule *schedule, fl_pack *pack);
+
 #endif

@@ -238,3 +238,30 @@ uint64_t fl_film_covered_pixels(const fl_film *film)
             covered += has_sample(film, x, y);
     return covered;
 }
+
+void fl_film_set_samples(fl_film *film, const fl_rect *rect, uint32_t samples)
+{
+    FL_ASSERT(rect->x1 <= film->width && rect->y1 <= film->height);
+    for (uint32_t y = rect->y0; y < rect->y1; y++)
+        for (uint32_t x = rect->x0; x < rect->x1; x++)
+            film->samples[(size_t)y * film->width + x] = samples;
+}
+
+void fl_film_pack(fl_film *film, fl_pack *pack)
+{
+    size_t pixels = (size_t)film->width * film->height;
+    for (uint32_t y = 0; pack->mode == FL_PACK_READ && y < film->height; y++)
+        film->row_epoch[y] = film->epoch;
+    for (size_t i = 0; i < pixels;
+         i++) { /* What has no meaning yet is 0, not whatever was there. */
+        if (film->samples[i] < BLOCK_SAMPLES)
+            memset(film->full[i], 0, sizeof film->full[i]);
+        if (film->samples[i] % BLOCK_SAMPLES == 0)
+            memset(film->block[i], 0, sizeof film->block[i]);
+    }
+    fl_pack_bytes(pack, film->full, pixels * sizeof *film->full);
+    fl_pack_bytes(pack, film->block, pixels * sizeof *film->block);
+    fl_pack_bytes(pack, film->invalid, pixels * sizeof *film->invalid);
+    for (size_t i = 0; i < pixels; i++)
+        pack->has_failed |= film->invalid[i] > film->samples[i];
+}

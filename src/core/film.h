@@ -5,7 +5,9 @@
 #ifndef FL_FILM_H
 #define FL_FILM_H
 
+#include "core/pack.h"
 #include "core/pipeline.h"
+#include "core/schedule.h"
 
 /** Sums of a w x h picture. A pixel's sum is the double sum, in order, of blocks of 16 consecutive
  * samples, each summed from 0 in index order (decision 1). */
@@ -55,5 +57,10 @@ void fl_film_fill_holes(uint8_t *rgba, uint32_t width, uint32_t rows);
  * O(pixels). */
 uint32_t fl_film_complete_samples(const fl_film *film);
 uint64_t fl_film_covered_pixels(const fl_film *film);
+
+/** Sums, when every pixel has a sample. Reading replaces them and needs the sample counts, which are
+ * not in the pack, from fl_film_set_samples first. O(pixels). */
+void fl_film_pack(fl_film *film, fl_pack *pack);
+void fl_film_set_samples(fl_film *film, const fl_rect *rect, uint32_t samples);
 
 #endif

@@ -2,7 +2,7 @@
  *
  * Layer 8: the progressive render: workers, film, restart and cancel. The thread that creates a
  * render is its owner; functions are the owner's unless they say "any thread". The owner never
- * waits for a worker, except in fl_render_wait and fl_render_destroy.
+ * waits for a worker, except in fl_render_wait, fl_render_checkpoint and fl_render_destroy.
  */
 #ifndef FL_RENDER_H
 #define FL_RENDER_H
@@ -88,6 +88,19 @@ void fl_render_destroy(fl_render *render);
  * the old render goes on untouched. */
 bool fl_render_restart(fl_render *render, fl_compiled *scene, const fl_params *params,
                        fl_diags *diags);
+
+/** All that is needed to go on later, as bytes from malloc for fl_render_resume; NULL and 0 when
+ * sample 0 is not complete. Waits for the units that are out and holds the render meanwhile, about
+ * as long as copying the film takes. Not for adaptive sampling. False after adding an error: out of
+ * memory. */
+bool fl_render_checkpoint(fl_render *render, void **out_data, size_t *out_bytes, fl_diags *diags);
+
+/** As fl_render_restart, but with the samples that a checkpoint holds; the film then goes on to the
+ * same bytes as without the break. Scene, parameters and program must be those of the checkpoint:
+ * the caller sees to that, only the size is checked. For a render that has nothing yet. False after
+ * adding an error; the render then begins from nothing. */
+bool fl_render_resume(fl_render *render, fl_compiled *scene, const fl_params *params,
+                      const void *data, size_t bytes, fl_diags *diags);
 
 void fl_render_set_limits(fl_render *render, const fl_render_limits *limits);
 

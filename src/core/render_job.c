@@ -58,6 +58,19 @@ void fl_job_destroy(fl_job *job)
     free(job);
 }
 
+void fl_job_reset(fl_job *job)
+{
+    fl_film_clear(job->film);
+    fl_schedule_reset(job->schedule);
+    fl_estimate_reset(job->estimate);
+    if (job->allocation)
+        fl_allocation_reset(job->allocation, job->frame->params.seed);
+    job->counts = (fl_counts){0};
+    job->cpu_seconds = job->seconds_before = 0.0;
+    memset(job->cost_seconds, 0, sizeof job->cost_seconds);
+    job->first_picture_seconds = job->first_sample_seconds = 0.0;
+}
+
 void fl_trash_empty(fl_trash *trash)
 {
     for (uint32_t i = 0; i < trash->frame_count; i++)
@@ -127,7 +140,7 @@ static fl_render_state state_now(const fl_render *render)
         return FL_RENDER_FAILED;
     if (render->out_units == 0 && !fl_job_has_work(job))
         return FL_RENDER_DONE;
-    return render->is_paused ? FL_RENDER_PAUSED : FL_RENDER_RUNNING;
+    return render->is_paused || render->is_held ? FL_RENDER_PAUSED : FL_RENDER_RUNNING;
 }
 
 void fl_render_update(fl_render *render)
@@ -158,15 +171,7 @@ void fl_render_begin(fl_render *render, fl_job *job, fl_frame *frame)
     job->generation = render->newest_generation;
     job->requested_at = render->requested_at;
     job->frame = frame;
-    fl_film_clear(job->film);
-    fl_schedule_reset(job->schedule);
-    fl_estimate_reset(job->estimate);
-    if (job->allocation)
-        fl_allocation_reset(job->allocation, frame->params.seed);
-    job->counts = (fl_counts){0};
-    job->cpu_seconds = job->seconds_before = 0.0;
-    memset(job->cost_seconds, 0, sizeof job->cost_seconds);
-    job->first_picture_seconds = job->first_sample_seconds = 0.0;
+    fl_job_reset(job);
 
     render->current = job;
     atomic_store_explicit(&render->generation, job->generation, memory_order_relaxed);

@@ -42,6 +42,8 @@ bool fl_job_bytes(uint32_t width, uint32_t height, bool is_adaptive, size_t *out
 /** Whether there is something to hand out or, no unit being out, to plan. */
 bool fl_job_has_work(const fl_job *job);
 void fl_job_destroy(fl_job *job);
+/** Forget all samples and what was counted; the frame is the new one's. */
+void fl_job_reset(fl_job *job);
 
 /** Things to free once the lock is released. */
 typedef struct fl_trash {
@@ -71,7 +73,8 @@ struct fl_render {
 
     pthread_mutex_t lock;
     pthread_cond_t work;    /**< There may be a unit, or the end. */
-    pthread_cond_t stopped; /**< The state is no longer running. */
+    pthread_cond_t stopped; /**< The state is no longer running, or the last unit of a held render
+                               has come back. */
 
     /* Jobs. `shown` has rank 0 complete. A pending restart without a job of its own takes over that
      * of `shown`, which is free when current becomes shown. */
@@ -84,6 +87,7 @@ struct fl_render {
     fl_render_limits limits;
     fl_render_state state;
     bool is_paused, has_failed, should_quit, is_notified;
+    bool is_held; /**< As paused, while the owner waits for the units that are out. */
     uint64_t revision;               /**< Of what is to be shown; from 1. */
     uint32_t out_units;              /**< Of the current generation, at the workers. */
     uint32_t stale_units;            /**< Of older ones, at the workers. */

@@ -136,7 +136,8 @@ static bool give_back(fl_worker *worker, const errand *e, fl_trash *trash)
             render->cancel_seconds = fl_render_now() - render->begun_at;
         return false;
     }
-    render->out_units--;
+    if (--render->out_units == 0 && render->is_held)
+        pthread_cond_broadcast(&render->stopped);
     uint64_t revision = render->revision;
     if (e->is_complete)
         commit(worker, e, trash);

@@ -4,6 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* More than anybody renders, and far from where counting wraps. */
+enum { PACKED_SAMPLES_MAX = 1 << 30 };
+
 typedef struct tile {
     uint16_t x0, y0, x1, y1;
     uint32_t samples; /* Committed. */
@@ -349,4 +352,63 @@ uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule)
 uint64_t fl_schedule_total_samples(const fl_schedule *schedule)
 {
     return schedule->total_samples;
+}
+
+bool fl_schedule_tile(const fl_schedule *schedule, uint32_t index, fl_rect *out_rect,
+                      uint32_t *out_samples)
+{
+    if (index >= schedule->tile_count)
+        return false;
+    const tile *t = &schedule->tiles[index];
+    *out_rect = (fl_rect){t->x0, t->y0, t->x1, t->y1};
+    *out_samples = t->samples;
+    return true;
+}
+
+static int fewer(const void *a, const void *b)
+{
+    const uint64_t *p = a, *q = b;
+    return *p < *q ? -1 : *p > *q;
+}
+
+/* Everything that follows from the tiles' samples, once sample 0 is complete. False: out of memory.
+ */
+static bool resume(fl_schedule *schedule)
+{
+    uint64_t *order = malloc(schedule->tile_count * sizeof *order);
+    if (!order)
+        return false;
+    for (uint32_t i = 0; i < schedule->tile_count; i++)
+        order[i] = (uint64_t)schedule->tiles[i].samples << 32 | i;
+    qsort(order, schedule->tile_count, sizeof *order, fewer);
+    schedule->queue_head = schedule->queue_count = 0;
+    schedule->total_samples = 0;
+    for (uint32_t i = 0; i < schedule->tile_count; i++) {
+        const tile *t = &schedule->tiles[(uint32_t)order[i]];
+        enqueue(schedule, (uint32_t)order[i]);
+        schedule->total_samples += (uint64_t)(t->x1 - t->x0) * (t->y1 - t->y0) * t->samples;
+    }
+    schedule->complete_samples = (uint32_t)(order[0] >> 32);
+    schedule->furthest = (uint32_t)(order[schedule->tile_count - 1] >> 32);
+    schedule->behind_count = 0;
+    for (uint32_t i = 0; i < schedule->tile_count; i++)
+        schedule->behind_count += order[i] >> 32 == schedule->complete_samples;
+    free(order);
+    for (uint32_t c = 0; c < schedule->cell_count; c++)
+        schedule->cells[c].units_left = 0;
+    memset(schedule->rank_units_left, 0, sizeof schedule->rank_units_left);
+    schedule->complete_ranks = FL_BAYER_RANKS;
+    schedule->next_unit = FL_BAYER_RANKS * schedule->cell_count;
+    return true;
+}
+
+void fl_schedule_pack(fl_schedule *schedule, fl_pack *pack)
+{
+    fl_pack_check(pack, &schedule->tile_count, sizeof schedule->tile_count);
+    for (uint32_t i = 0; i < schedule->tile_count; i++) {
+        fl_pack_bytes(pack, &schedule->tiles[i].samples, sizeof schedule->tiles[i].samples);
+        pack->has_failed |= schedule->tiles[i].samples - 1 >= PACKED_SAMPLES_MAX;
+    }
+    if (pack->mode == FL_PACK_READ && !pack->has_failed)
+        pack->has_failed = !resume(schedule);
 }

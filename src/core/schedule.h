@@ -16,7 +16,7 @@
 #ifndef FL_SCHEDULE_H
 #define FL_SCHEDULE_H
 
-#include "core/base.h"
+#include "core/pack.h"
 
 enum {
     FL_BAYER_RANKS = 64,
@@ -74,5 +74,12 @@ uint32_t fl_schedule_complete_samples(const fl_schedule *schedule);
 uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule);
 /** Samples committed, all pixels together. */
 uint64_t fl_schedule_total_samples(const fl_schedule *schedule);
+
+/** How far each tile is, when sample 0 is complete and no unit is out; reading takes a schedule that
+ * was just reset. O(tiles log tiles). */
+void fl_schedule_pack(fl_schedule *schedule, fl_pack *pack);
+/** Tile number `index`: its pixels and how many samples they have. False: there is none. */
+bool fl_schedule_tile(const fl_schedule *schedule, uint32_t index, fl_rect *out_rect,
+                      uint32_t *out_samples);
 
 #endif

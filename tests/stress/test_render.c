@@ -160,6 +160,102 @@ static void pauses_leave_the_bytes_alone(void **state)
     fl_render_destroy(render);
 }
 
+/* What one render left, another goes on with: any number of threads, any amount of work done. */
+static void a_checkpoint_goes_on_to_the_same_bytes(void **state)
+{
+    (void)state;
+    static const uint32_t permits[] = {65, 90, 300, 1000};
+    for (size_t i = 0; i < FL_COUNT_OF(permits); i++) {
+        void *data = NULL;
+        size_t bytes = 0;
+        fl_diags diags = {0};
+        fl_render *render = kit_render(thread_counts[i]);
+        kit_limit(render, 40);
+        fake_permit(permits[i]);
+        kit_restart(render, 5, X0, Y0, W, H);
+        fake_await_waiting(1);
+        fake_permit(UINT64_MAX); /* Units that are out come back. */
+        assert_true(fl_render_checkpoint(render, &data, &bytes, &diags));
+        fl_progress before, after;
+        fl_render_progress(render, &before);
+        assert_true(fl_render_wait(render, -1.0)); /* The hold is over. */
+        kit_assert_film(render, 5, X0, Y0, W, H, 40);
+        fl_render_destroy(render);
+
+        render = kit_render(thread_counts[FL_COUNT_OF(permits) - 1 - i]);
+        kit_limit(render, 1);
+        fl_params params = fake_params(5, X0, Y0, W, H);
+        assert_non_null(data);
+        assert_true(fl_render_resume(render, NULL, &params, data, bytes, &diags));
+        assert_true(fl_render_wait(render, -1.0));
+        fl_render_progress(render, &after);
+        assert_true(after.counts.samples >= W * H && after.complete_ranks == FL_BAYER_RANKS);
+        kit_limit(render, 40);
+        assert_true(fl_render_wait(render, -1.0));
+        kit_assert_film(render, 5, X0, Y0, W, H, 40);
+        void *again = NULL, *whole = NULL;
+        size_t again_bytes, whole_bytes;
+        assert_true(fl_render_checkpoint(render, &again, &again_bytes, &diags));
+        fl_render_progress(render, &after);
+        fl_render_destroy(render);
+
+        render = kit_render(2); /* Error estimate and counts as without the break, too. */
+        kit_limit(render, 40);
+        kit_restart(render, 5, X0, Y0, W, H);
+        assert_true(fl_render_wait(render, -1.0));
+        fl_render_progress(render, &before);
+        assert_true(fl_render_checkpoint(render, &whole, &whole_bytes, &diags));
+        assert_memory_equal(&before.error, &after.error, sizeof before.error);
+        assert_memory_equal(&before.counts, &after.counts, sizeof before.counts);
+        assert_int_equal(again_bytes, whole_bytes);
+        fl_render_destroy(render);
+        assert_int_equal(diags.count, 0);
+        free(data);
+        free(again);
+        free(whole);
+    }
+}
+
+static void a_damaged_checkpoint_is_refused_and_the_render_begins_anew(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    void *data = NULL, *nothing = &diags;
+    size_t bytes = 0, no_bytes = 1;
+    fl_render *render = kit_render(2);
+    assert_true(fl_render_checkpoint(render, &nothing, &no_bytes, &diags));
+    assert_true(nothing == NULL && no_bytes == 0); /* No samples, nothing to keep. */
+    kit_limit(render, 3);
+    kit_restart(render, 5, X0, Y0, W, H);
+    assert_true(fl_render_wait(render, -1.0));
+    assert_true(fl_render_checkpoint(render, &data, &bytes, &diags));
+    fl_render_destroy(render);
+    uint8_t *copy = malloc(bytes);
+    assert_non_null(copy);
+    for (uint32_t round = 0; round < 5; round++) {
+        memcpy(copy, data, bytes);
+        size_t length = round == 0 ? bytes - 1 : round == 1 ? 7 : bytes;
+        if (round == 2)
+            copy[0] ^= 1; /* Another version of the format. */
+        if (round == 3)
+            copy[4]++;  /* Another width. */
+        if (round == 4) /* More invalid samples than samples. */
+            memset(copy + bytes - (W * H * 3 * sizeof(float)) - 35 * sizeof(double) * 2 - 64, 255,
+                   64);
+        render = kit_render(2);
+        kit_limit(render, 3);
+        fl_params params = fake_params(6, X0, Y0, W, H);
+        assert_false(fl_render_resume(render, NULL, &params, copy, length, &diags));
+        assert_int_equal(diags.error_count, round + 1);
+        assert_true(fl_render_wait(render, -1.0));
+        kit_assert_film(render, 6, X0, Y0, W, H, 3);
+        fl_render_destroy(render);
+    }
+    free(copy);
+    free(data);
+    fl_diags_deinit(&diags);
+}
+
 static void an_empty_render_has_nothing(void **state)
 {
     (void)state;
@@ -526,6 +622,8 @@ int main(void)
         cmocka_unit_test(a_raised_cap_goes_on_and_a_lowered_one_keeps),
         cmocka_unit_test(a_lowered_cap_amid_the_work_ends_even),
         cmocka_unit_test(pauses_leave_the_bytes_alone),
+        cmocka_unit_test(a_checkpoint_goes_on_to_the_same_bytes),
+        cmocka_unit_test(a_damaged_checkpoint_is_refused_and_the_render_begins_anew),
         cmocka_unit_test(an_empty_render_has_nothing),
         cmocka_unit_test(noise_stops_at_the_same_sample_for_all_threads),
         cmocka_unit_test(time_stops_with_an_even_film),
