@@ -35,6 +35,7 @@ typedef struct app {
     vw_view *view;
     vw_session session;
     vw_watch *watch;
+    vw_loading *loading;
     FILE *record;
     struct timespec begin;
     uint64_t now_ms;
@@ -201,9 +202,26 @@ static void reload_if_changed(app *a)
     vw_event_push(&a->platform->events, &event);
 }
 
+/* Read by its own thread; the old picture stays and can be used until then. */
 static void load_scene(app *a, const char *path)
 {
-    if (!vw_session_load(&a->session, path, &a->diags)) {
+    if (strlen(path) >= VW_PATH_MAX) {
+        fl_environment_error(&a->diags, "the scene's path is longer than %d bytes",
+                             VW_PATH_MAX - 1);
+        show_error(a);
+        return;
+    }
+    vw_state_say(&a->session.state, "reading");
+    vw_loading_ask(a->loading, path);
+}
+
+static void take_loaded(app *a)
+{
+    char path[VW_PATH_MAX];
+    vw_scene scene;
+    if (!vw_loading_take(a->loading, &scene, path, &a->diags))
+        return;
+    if (!scene.compiled || !vw_session_adopt(&a->session, path, &scene, &a->diags)) {
         show_error(a);
         return;
     }
@@ -389,6 +407,7 @@ static bool loop(app *a, fl_diags *diags)
         bool had_message = vw_state_message(&a->session.state) != NULL;
         reload_if_changed(a);
         take_events(a);
+        take_loaded(a);
         a->needs_draw |= had_message != (vw_state_message(&a->session.state) != NULL);
         restart_if_due(a);
         refresh_if_due(a);
@@ -456,11 +475,13 @@ bool vw_run(const vw_options *options, fl_diags *diags)
         clock_gettime(CLOCK_MONOTONIC, &a.begin);
         a.watch = vw_watch_create(wake, a.platform);
         watch_files(&a);
-        is_fine = loop(&a, diags);
+        a.loading = vw_loading_create(&options->loader, wake, a.platform, diags);
+        is_fine = a.loading && loop(&a, diags);
         is_fine &= close_record(&a, diags);
     }
     /* The threads go first: they wake the platform. */
     vw_watch_destroy(a.watch);
+    vw_loading_destroy(a.loading);
     vw_session_close(&a.session);
     vw_view_destroy(a.view);
     if (a.platform)

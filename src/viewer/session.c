@@ -8,13 +8,6 @@
 #include "io/image_file.h"
 #include "io/state_text.h"
 
-static void scene_deinit(vw_scene *scene)
-{
-    fl_compiled_release(scene->compiled);
-    fl_scene_destroy(scene->scene);
-    *scene = (vw_scene){0};
-}
-
 static uint32_t sample_cap(const vw_session *session)
 {
     uint32_t samples = session->options->limits.samples;
@@ -104,7 +97,7 @@ void vw_session_close(vw_session *session)
     vw_mix_end(&session->mix);
     vw_show_deinit(&session->show);
     vw_insight_deinit(&session->insight);
-    scene_deinit(&session->scene);
+    vw_scene_deinit(&session->scene);
     free(session->rgba);
     free(session->backdrop);
     free(session->keymap);
@@ -219,22 +212,27 @@ void vw_session_set_limits(vw_session *session)
 
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
 {
-    bool is_same = strcmp(path, session->scene_path) == 0;
     vw_scene scene = {0};
     if (strlen(path) >= VW_PATH_MAX)
         return set_path(session, path, diags);
     if (!session->options->loader.load(session->options->loader.context, path, &scene, diags))
         return false;
-    scene_deinit(&session->scene);
-    session->scene = scene;
+    return vw_session_adopt(session, path, &scene, diags);
+}
+
+bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *scene, fl_diags *diags)
+{
+    bool is_same = strcmp(path, session->scene_path) == 0;
+    vw_scene_deinit(&session->scene);
+    session->scene = *scene;
     session->state.is_mixing = false;
     session->show.is_asked = false;
     if (is_same) {
-        vw_state_rebase(&session->state, &scene.params, scene.compiled, sample_cap(session));
+        vw_state_rebase(&session->state, &scene->params, scene->compiled, sample_cap(session));
         vw_history_begin(&session->history, &session->state, false);
         return true;
     }
-    if (!set_path(session, scene.path[0] ? scene.path : path, diags))
+    if (!set_path(session, scene->path[0] ? scene->path : path, diags))
         return false;
     begin_scene(session, diags);
     return true;

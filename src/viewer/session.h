@@ -12,6 +12,7 @@
 #include "viewer/input.h"
 #include "viewer/keymap.h"
 #include "viewer/insight.h"
+#include "viewer/loading.h"
 #include "viewer/mix.h"
 #include "viewer/show.h"
 #include "viewer/viewer.h"
@@ -62,6 +63,10 @@ void vw_session_set_limits(vw_session *session);
 /** Read a scene, keeping the look (same path) or not (another). False: the last good scene stays,
  * `diags` says why. Needs a restart afterwards. */
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags);
+
+/** The second half of that: take over a scene that was read from `path`. */
+bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *scene,
+                      fl_diags *diags);
 
 /** Do what the bits of an input ask of a session (picks, undo, bookmarks, the pin) and note the
  * step for undo. Returns the bits with what that made stale. */

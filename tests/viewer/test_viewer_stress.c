@@ -2,7 +2,8 @@
  *
  * Thousands of random inputs, resizes, reloads and looks at the picture, as fast as they go:
  * nothing breaks, and the film in the end is that of a fresh session with the same look. The first
- * argument is the number of inputs.
+ * argument is the number of inputs. With `--seconds S` behind it such rounds follow one another on
+ * one session for so long, and neither memory nor open files may grow.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -10,8 +11,11 @@
 #include <stdint.h>
 
 #include <cmocka.h>
+#include <dirent.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -21,6 +25,7 @@
 
 static uint32_t input_count = 2000;
 static uint32_t seed = 20;
+static double run_seconds;
 
 static uint32_t draw(uint32_t count)
 {
@@ -94,48 +99,134 @@ static void act(vw_session *session, vw_dirty dirty, fl_diags *diags)
     session->state.look.light_samples = fl_min_u32(session->state.look.light_samples, 4);
 }
 
+/* Random inputs, as fast as they go; returns how many pictures were shown. */
+static uint32_t play(vw_session *session, uint64_t *ms)
+{
+    fl_diags diags = {0};
+    uint32_t shown_count = 0;
+    for (uint32_t i = 0; i < input_count; i++) {
+        vw_event event = random_event();
+        *ms += draw(40);
+        act(session, vw_input_event(&session->input, &session->state, &event, *ms), &diags);
+        /* Now and then the workers get so far that there is something to see. */
+        if (draw(8) == 0)
+            fl_render_wait(session->render, 0.004);
+        if (vw_session_refresh(session, &diags)) {
+            assert_non_null(vw_session_shown(session));
+            shown_count++;
+        }
+        char notes[512];
+        vw_session_notes(session, notes, sizeof notes);
+        if (diags.error_count)
+            fail_msg("input %u: %s", i, diags.items[0].message);
+    }
+    fl_diags_deinit(&diags);
+    return shown_count;
+}
+
+static void open_session(vw_session *session, const vw_options *options, uint32_t width,
+                         uint32_t height)
+{
+    fl_diags diags = {0};
+    assert_true(vw_session_open(session, options, VIEWER_TEST_SCENE, width, height, &diags));
+    assert_true(vw_session_start(session, NULL, NULL, &diags));
+    session->is_replay = true;
+}
+
+/* The film of a fresh session with the same look is the same. */
+static void assert_no_trace(vw_session *session, const vw_options *options)
+{
+    char after[FL_SHA256_HEX + 1], want[FL_SHA256_HEX + 1];
+    vw_session fresh;
+    film_of(session, after);
+    open_session(&fresh, options, session->state.width, session->state.height);
+    fresh.state.look = session->state.look;
+    film_of(&fresh, want);
+    assert_string_equal(after, want);
+    vw_session_close(&fresh);
+}
+
 static void random_inputs_leave_no_trace_in_the_film(void **unused)
 {
     (void)unused;
     printf("seed %u, %u inputs\n", seed, input_count);
     vw_options options = viewer_test_options();
-    vw_session session, fresh;
+    vw_session session;
     fl_diags diags = {0};
-    assert_true(vw_session_open(&session, &options, VIEWER_TEST_SCENE, 0, 0, &diags));
-    assert_true(vw_session_start(&session, NULL, NULL, &diags));
+    open_session(&session, &options, 0, 0);
     assert_true(vw_session_restart(&session, &diags));
-    session.is_replay = true;
     uint64_t ms = 0;
-    uint32_t shown_count = 0;
-    for (uint32_t i = 0; i < input_count; i++) {
-        vw_event event = random_event();
-        ms += draw(40);
-        act(&session, vw_input_event(&session.input, &session.state, &event, ms), &diags);
-        /* Now and then the workers get so far that there is something to see. */
-        if (draw(8) == 0)
-            fl_render_wait(session.render, 0.004);
-        if (vw_session_refresh(&session, &diags)) {
-            assert_non_null(vw_session_shown(&session));
-            shown_count++;
-        }
-        char notes[512];
-        vw_session_notes(&session, notes, sizeof notes);
-        if (diags.error_count)
-            fail_msg("input %u: %s", i, diags.items[0].message);
-    }
+    uint32_t shown_count = play(&session, &ms);
     printf("%u pictures were shown, %llu restarts made\n", shown_count,
            (unsigned long long)session.progress.newest_generation);
     assert_true(shown_count > 0);
-    char after[FL_SHA256_HEX + 1], want[FL_SHA256_HEX + 1];
-    film_of(&session, after);
-    assert_true(vw_session_open(&fresh, &options, VIEWER_TEST_SCENE, session.state.width,
-                                session.state.height, &diags));
-    assert_true(vw_session_start(&fresh, NULL, NULL, &diags));
-    fresh.state.look = session.state.look;
-    film_of(&fresh, want);
-    assert_string_equal(after, want);
+    assert_no_trace(&session, &options);
     vw_session_close(&session);
-    vw_session_close(&fresh);
+}
+
+static uint32_t open_files(void)
+{
+    uint32_t count = 0;
+    DIR *folder = opendir("/proc/self/fd");
+    while (folder && readdir(folder))
+        count++;
+    if (folder)
+        closedir(folder);
+    return count;
+}
+
+/* Bytes that malloc has given out, with the session brought to the same state each time. */
+static size_t settled_bytes(vw_session *session)
+{
+    fl_diags diags = {0};
+    char film[FL_SHA256_HEX + 1];
+    vw_state_resize(&session->state, 100, 70);
+    act(session, VW_DIRTY_SCENE, &diags);
+    for (int i = 0; i < 3; i++) /* All films that are kept have this size. */
+        film_of(session, film);
+    session->exact_samples = 0;
+    vw_session_set_limits(session);
+    return mallinfo2().uordblks;
+}
+
+/* The least of so many rounds counts: a pinned picture or a larger queue passes, a leak does not.
+ */
+enum { WINDOW_ROUNDS = 16, WARM_UP_ROUNDS = 16, GROWTH_MAX_BYTES = 64 << 10 };
+
+static void hours_leave_nothing_behind(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    fl_diags diags = {0};
+    open_session(&session, &options, 0, 0);
+    assert_true(vw_session_restart(&session, &diags));
+    uint64_t ms = 0;
+    time_t begun = time(NULL);
+    size_t first = 0, least = SIZE_MAX;
+    uint32_t files = 0, rounds = 0;
+    for (double passed = 0.0; passed < run_seconds || rounds < 48; rounds++) {
+        play(&session, &ms);
+        size_t bytes = settled_bytes(&session);
+        least = bytes < least ? bytes : least;
+        passed = difftime(time(NULL), begun);
+        if (rounds == WARM_UP_ROUNDS)
+            files = open_files();
+        assert_true(rounds < WARM_UP_ROUNDS || open_files() == files);
+        if (rounds % WINDOW_ROUNDS != WINDOW_ROUNDS - 1)
+            continue;
+        printf("%7.0f s, %9u inputs, %zu bytes, %u files\n", passed, (rounds + 1) * input_count,
+               least, open_files());
+        fflush(stdout);
+        if (rounds > WARM_UP_ROUNDS) {
+            first = first ? first : least;
+            assert_true(least <= first + GROWTH_MAX_BYTES);
+        }
+        least = SIZE_MAX;
+    }
+    printf("%u rounds, %.2f hours of flying\n", rounds, (double)ms / 3.6e6);
+    assert_no_trace(&session, &options);
+    vw_session_close(&session);
 }
 
 int main(int argc, char **argv)
@@ -143,8 +234,14 @@ int main(int argc, char **argv)
     double count;
     if (argc > 1 && fl_number_parse(argv[1], argv[1] + strlen(argv[1]), &count))
         input_count = (uint32_t)count;
+    if (argc > 3 && strcmp(argv[2], "--seconds") == 0)
+        fl_number_parse(argv[3], argv[3] + strlen(argv[3]), &run_seconds);
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(random_inputs_leave_no_trace_in_the_film),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    const struct CMUnitTest hours[] = {
+        cmocka_unit_test(hours_leave_nothing_behind),
+    };
+    return run_seconds > 0.0 ? cmocka_run_group_tests(hours, NULL, NULL)
+                             : cmocka_run_group_tests(tests, NULL, NULL);
 }
