@@ -19,7 +19,7 @@ const cli_command cli_command_table[CLI_COMMAND_COUNT] = {
                    "Renders the scene with one knob at a time moved and compares with a converged reference: error, "
                    "time, rays; writes study.csv, study.json, plots (with gnuplot) and index.html. --noise RMSE asks for "
                    "the cheapest setting with that error. Without --size the scene is shrunk to 128 pixels. "
-                   "Knobs: sampler, light-samples, depth, weight-threshold, scale, accel, revolve-solver, adaptive."},
+                   "Knobs: sampler, light-samples, depth, weight-threshold, scale, accel, revolve-solver, adaptive, precision."},
     [CLI_BENCH] = {"bench", "[MESH|SCENE...]", "measure rays per second by kind, building, first pictures",
                    "MESH is a mesh file or sphere:N, a bumpy sphere of about N triangles: CPU time of one thread, every "
                    "number the median of --repeats interleaved runs. SCENE is rendered to 16 samples. Without words: the "

@@ -128,6 +128,8 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->solver = o->solver ? FL_REVOLVE_NEWTON : FL_REVOLVE_ROBUST;
     if (params->solver != FL_REVOLVE_ROBUST && cli_has(o, CLI_OPT_REVOLVE_STARTS))
         params->solver = o->revolve_starts;
+    if (cli_has(o, CLI_OPT_PRECISION))
+        params->precision = (fl_precision)o->precision;
 }
 
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)

@@ -11,6 +11,7 @@
 static const char *const switch_names[] = {"off", "on", NULL};
 static const char *const sampler_names[] = {"sobol", "random", "padded", "stratified", NULL};
 static const char *const solver_names[] = {"robust", "newton", NULL};
+static const char *const precision_names[] = {"float", "double", NULL};
 static const char *const accel_names[] = {"bvh", "octree", "none", NULL};
 static const char *const isa_names[] = {"scalar", "sse2", "avx2", "neon", "auto", NULL};
 static const char *const dialect_names[] = {"firstlight", "pa1", "m04", "m12", NULL};
@@ -60,6 +61,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
     [CLI_OPT_REVOLVE_STARTS] = {"revolve-starts", 0, "N", CLI_KIND_COUNT, AT(revolve_starts), 1,
                                 FL_REVOLVE_MAX_STARTS, NULL, PICTURE | BIT(CLI_INFO),
                                 "starts a segment of --revolve-solver newton (default 8)"},
+    [CLI_OPT_PRECISION] = {"precision", 0, NULL, CLI_KIND_CHOICE, AT(precision), 0, 0, precision_names,
+                           PICTURE, "numbers that rays are traced in (default float); double measures its error"},
     [CLI_OPT_ACCEL] = {"accel", 0, NULL, CLI_KIND_CHOICE, AT(accel), 0, 0, accel_names, LOADING,
                        "how triangles are found (default bvh); all give the same picture"},
     [CLI_OPT_OCTREE_HEIGHT] = {"octree-height", 0, "N", CLI_KIND_COUNT, AT(octree_height), 1, 8, NULL, LOADING,
@@ -100,6 +103,10 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                          BIT(CLI_STUDY) | BIT(CLI_BENCH), "rounds of measurements (default: study 4, bench 5)"},
     [CLI_OPT_SWEEP] = {"sweep", 0, "KNOB,...", CLI_KIND_TEXT, AT(sweep), 0, 0, NULL, BIT(CLI_STUDY),
                        "knobs to move (default: all that mean something in the scene)"},
+    [CLI_OPT_EXTREMES] = {"extremes", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_STUDY),
+                          "no scene: the ends of all ranges against double precision; exit 1 if a row fails"},
+    [CLI_OPT_ALL] = {"all", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_STUDY),
+                     "with --extremes: the slow rows too"},
     [CLI_OPT_AGAINST] = {"against", 0, "NAME", CLI_KIND_TEXT, AT(against), 0, 0, NULL, BIT(CLI_BENCH),
                          "trace the same rays with another tracer: embree, where its module was built"},
     [CLI_OPT_GROWTH] = {"growth", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_BENCH),

@@ -41,6 +41,7 @@ typedef enum cli_option_id {
     CLI_OPT_SAMPLER,
     CLI_OPT_REVOLVE_SOLVER,
     CLI_OPT_REVOLVE_STARTS,
+    CLI_OPT_PRECISION,
     CLI_OPT_ACCEL,
     CLI_OPT_OCTREE_HEIGHT,
     CLI_OPT_ISA,
@@ -60,6 +61,8 @@ typedef enum cli_option_id {
     CLI_OPT_BUDGET,
     CLI_OPT_REPEATS,
     CLI_OPT_SWEEP,
+    CLI_OPT_EXTREMES,
+    CLI_OPT_ALL,
     CLI_OPT_AGAINST,
     CLI_OPT_GROWTH,
     CLI_OPT_SOURCE,
@@ -94,7 +97,7 @@ typedef struct cli_options {
     uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats, revolve_starts;
     double time_s, budget_s, noise, scale, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
-    uint32_t adaptive, sampler, solver, accel, dialect; /**< Values of the core's enums. */
+    uint32_t adaptive, sampler, solver, precision, accel, dialect; /**< Values of the core's enums. */
     const char *outputs[CLI_OUTPUTS_MAX];
     uint32_t output_count;
     const char *checkpoint, *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;

@@ -14,7 +14,7 @@ enum {
 
 const char *const study_knob_names[STUDY_KNOB_COUNT] = {
     "baseline", "sampler", "light-samples",  "depth",   "weight-threshold",
-    "scale",    "accel",   "revolve-solver", "adaptive"};
+    "scale",    "accel",   "revolve-solver", "adaptive", "precision"};
 
 static const char *const sampler_names[] = {"sobol", "random", "padded", "stratified"};
 static const char *const accel_names[] = {"bvh", "octree", "none"};
@@ -200,6 +200,15 @@ static void add_adaptive(study_plan *plan)
     c->is_biased = true;
 }
 
+/* The two converge to pictures that differ by the error of floats. */
+static void add_precisions(study_plan *plan)
+{
+    bool is_double = plan->configs[0].params.precision == FL_PRECISION_DOUBLE;
+    study_config *c = add(plan, STUDY_PRECISION, is_double ? "float" : "double");
+    c->params.precision = is_double ? FL_PRECISION_FLOAT : FL_PRECISION_DOUBLE;
+    c->is_biased = true;
+}
+
 bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_max,
                       uint32_t threads, study_plan *out_plan)
 {
@@ -225,6 +234,8 @@ bool study_plan_build(const cli_scene *scene, uint32_t knobs, uint32_t samples_m
         add_adaptive(out_plan);
     if ((knobs >> STUDY_SOLVER & 1u) && (needs & FL_NEED_REVOLUTIONS))
         add_solvers(out_plan, samples_max);
+    if (knobs >> STUDY_PRECISION & 1u)
+        add_precisions(out_plan);
     bool has_mesh = needs & FL_NEED_TRIANGLES;
     return !(knobs >> STUDY_ACCEL & 1u) || !has_mesh || add_accels(out_plan, scene, threads);
 }
@@ -269,6 +280,9 @@ void study_own_name(const study_plan *plan, study_knob knob, char *out, size_t b
         break;
     case STUDY_ADAPTIVE:
         snprintf(text, sizeof text, "%s", p->is_adaptive ? "on" : "off");
+        break;
+    case STUDY_PRECISION:
+        snprintf(text, sizeof text, "%s", p->precision == FL_PRECISION_DOUBLE ? "double" : "float");
         break;
     default:
         snprintf(out, bytes, "as asked for");

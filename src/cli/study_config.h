@@ -18,6 +18,7 @@ typedef enum study_knob {
     STUDY_ACCEL,
     STUDY_SOLVER,
     STUDY_ADAPTIVE,
+    STUDY_PRECISION,
     STUDY_KNOB_COUNT
 } study_knob;
 

@@ -171,7 +171,8 @@ static const char *const knob_words[STUDY_KNOB_COUNT] = {
     [STUDY_SCALE] = "A smaller picture, enlarged to compare. What it cannot show is the floor.",
     [STUDY_ACCEL] = "How triangles are found: the same picture, only the price differs.",
     [STUDY_SOLVER] = "How rays meet surfaces of revolution. Hits that Newton misses are the floor.",
-    [STUDY_ADAPTIVE] = "Samples where the noise is; the number is the mean of all pixels."};
+    [STUDY_ADAPTIVE] = "Samples where the noise is; the number is the mean of all pixels.",
+    [STUDY_PRECISION] = "Numbers that rays are traced in. The error of floats is the floor."};
 
 /* The last cell of a column that was measured; NULL: none. */
 static const study_cell *last_cell(const study_report *report, uint32_t index)

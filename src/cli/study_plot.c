@@ -23,7 +23,8 @@ static const char *const axis_names[] = {[SAMPLES] = "samples a pixel",
 static const char *const knob_colors[STUDY_KNOB_COUNT] = {
     [STUDY_BASELINE] = "#1a1a1a", [STUDY_SAMPLER] = "#1f6fb4", [STUDY_LIGHT_SAMPLES] = "#e08a00",
     [STUDY_DEPTH] = "#2a8d4a",    [STUDY_WEIGHT] = "#8a4fd0",  [STUDY_SCALE] = "#d62839",
-    [STUDY_ACCEL] = "#8d6e63",    [STUDY_SOLVER] = "#d05fae",  [STUDY_ADAPTIVE] = "#7a7a00"};
+    [STUDY_ACCEL] = "#8d6e63",    [STUDY_SOLVER] = "#d05fae",  [STUDY_ADAPTIVE] = "#7a7a00",
+    [STUDY_PRECISION] = "#00838f"};
 
 static const char *knob_color(study_knob knob)
 {

@@ -33,6 +33,7 @@ extern const char *const fl_need_names[FL_NEED_COUNT];
 typedef struct fl_shader {
     float diffuse[3], specular[3], ambient[3], reflect[3], refract[3];
     float shininess, refraction_index;
+    double index_exact; /**< refraction_index unrounded, for rays in double: glass magnifies it. */
     uint32_t texture; /**< Index into textures or FL_NONE. Multiplies diffuse (and ambient when it defaults). */
     bool ambient_is_diffuse;
 } fl_shader;

@@ -82,6 +82,7 @@ static fl_shader shader_of(const fl_material *m, uint32_t texture)
 {
     fl_shader s = {.shininess = (float)m->shininess,
                    .refraction_index = (float)m->refraction_index,
+                   .index_exact = m->refraction_index,
                    .texture = texture,
                    .ambient_is_diffuse = !m->has_ambient};
     store_color(s.diffuse, m->diffuse);

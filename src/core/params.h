@@ -41,6 +41,9 @@ typedef enum fl_pixel_rule {
     FL_PIXEL_GRID_ENDS
 } fl_pixel_rule;
 
+/** In which numbers rays are traced; double is the built-in measure of float error, and slower. */
+typedef enum fl_precision { FL_PRECISION_FLOAT, FL_PRECISION_DOUBLE } fl_precision;
+
 /** What a course's own program leaves out or does otherwise; all zero is our way (decision 22). */
 typedef struct fl_exact_rules {
     fl_pixel_rule pixel;
@@ -70,6 +73,7 @@ typedef struct fl_params {
     bool is_adaptive;
     uint32_t frozen; /**< For measurement: bits of FL_FREEZE_*. */
     fl_revolve_solver solver;
+    fl_precision precision;
     fl_exact_rules exact;
     fl_vec3 background, ambient;
     /** Borrowed for the call that takes the parameters, which copies them. */

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/double_path.h"
 #include "core/pipeline_work.h"
 #include "core/texture.h"
 
@@ -299,6 +300,9 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
                      bool *out_of_memory)
 {
     FL_ASSERT(unit->count <= FL_UNIT_PIXELS);
+    *out_of_memory = false;
+    if (frame->params.precision == FL_PRECISION_DOUBLE)
+        return fl_double_run(frame, unit, &workspace->result, generation, wanted, counts);
     fl_pipe pipe = {
         .frame = frame,
         .unit = unit,

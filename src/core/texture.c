@@ -55,7 +55,7 @@ static pair pair_nearest(double x, uint32_t size)
 }
 
 /* `down` counts rows from the top. */
-static void blend(const fl_image *image, pair across, pair down, float out_rgb[3])
+static void blend(const fl_image *image, pair across, pair down, double out_rgb[3])
 {
     texel a = texel_at(image, across.at[0], down.at[0]),
           b = texel_at(image, across.at[1], down.at[0]);
@@ -64,20 +64,20 @@ static void blend(const fl_image *image, pair across, pair down, float out_rgb[3
     for (int i = 0; i < 3; i++) {
         double top = a.c[i] + across.weight * (b.c[i] - a.c[i]);
         double bottom = c.c[i] + across.weight * (d.c[i] - c.c[i]);
-        out_rgb[i] = (float)(top + down.weight * (bottom - top));
+        out_rgb[i] = top + down.weight * (bottom - top);
     }
 }
 
 /* A coordinate as a fraction of the picture in [0, 1]. */
-static double fraction(float coordinate, float scale, bool clamps)
+static double fraction(double coordinate, float scale, bool clamps)
 {
-    double x = (double)coordinate * (double)scale;
+    double x = coordinate * (double)scale;
     if (!isfinite(x))
         return 0.0;
     return clamps ? fl_clamp(x, 0.0, 1.0) : x - floor(x);
 }
 
-void fl_texture_eval(const fl_texture *texture, float u, float v, float out_rgb[3])
+void fl_texture_eval_double(const fl_texture *texture, double u, double v, double out_rgb[3])
 {
     const fl_image *image = texture->image;
     double x = fraction(u, texture->scale[0], false) * (double)image->width;
@@ -86,12 +86,25 @@ void fl_texture_eval(const fl_texture *texture, float u, float v, float out_rgb[
         texel t = texel_at(image, pair_nearest(x, image->width).at[0],
                            pair_nearest(y, image->height).at[0]);
         for (int i = 0; i < 3; i++)
-            out_rgb[i] = (float)t.c[i];
+            out_rgb[i] = t.c[i];
         return;
     }
     pair down =
         texture->clamps_v ? pair_clamped(y, image->height) : pair_repeated(y, image->height);
     blend(image, pair_repeated(x, image->width), down, out_rgb);
+}
+
+static void round3(const double rgb[3], float out_rgb[3])
+{
+    for (int i = 0; i < 3; i++)
+        out_rgb[i] = (float)rgb[i];
+}
+
+void fl_texture_eval(const fl_texture *texture, float u, float v, float out_rgb[3])
+{
+    double rgb[3];
+    fl_texture_eval_double(texture, (double)u, (double)v, rgb);
+    round3(rgb, out_rgb);
 }
 
 /* Which signed coordinates of d run to the right and up on a face. */
@@ -106,10 +119,9 @@ static const face_axes axes[FL_CUBE_FACES] = {
     [FL_CUBE_FRONT] = {2, 0, 1, -1, 1, -1, 1}, [FL_CUBE_BACK] = {2, 0, 1, 1, 1, -1, 1},
 };
 
-void fl_cube_eval(fl_image *const faces[FL_CUBE_FACES], const float d[3], bool is_course,
-                  float out_rgb[3])
+void fl_cube_eval_double(fl_image *const faces[FL_CUBE_FACES], const double p[3], bool is_course,
+                         double out_rgb[3])
 {
-    double p[3] = {(double)d[0], (double)d[1], (double)d[2]};
     double ax = fabs(p[0]), ay = fabs(p[1]), az = fabs(p[2]);
     int face = ax >= ay && ax >= az ? (p[0] < 0.0 ? FL_CUBE_LEFT : FL_CUBE_RIGHT)
                : ay >= az           ? (p[1] < 0.0 ? FL_CUBE_DOWN : FL_CUBE_UP)
@@ -125,4 +137,13 @@ void fl_cube_eval(fl_image *const faces[FL_CUBE_FACES], const float d[3], bool i
     double shift = is_course ? 0.5 : 0.0;
     blend(image, pair_clamped(s * (double)image->width + shift, image->width),
           pair_clamped((1.0 - t) * (double)image->height + shift, image->height), out_rgb);
+}
+
+void fl_cube_eval(fl_image *const faces[FL_CUBE_FACES], const float d[3], bool is_course,
+                  float out_rgb[3])
+{
+    const double p[3] = {(double)d[0], (double)d[1], (double)d[2]};
+    double rgb[3];
+    fl_cube_eval_double(faces, p, is_course, rgb);
+    round3(rgb, out_rgb);
 }

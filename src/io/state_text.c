@@ -170,7 +170,7 @@ bool fl_camera_read_text(const char *text, size_t text_bytes, fl_camera *camera)
 /* Whole numbers of the settings, in the order of the text. */
 typedef struct settings {
     double size[2], crop[4], depth, light_samples, light_default, weight, transparent, sampler,
-        seed, solver, exact, dialect, adaptive;
+        seed, solver, exact, dialect, adaptive, precision;
 } settings;
 
 static const struct {
@@ -190,6 +190,7 @@ static const struct {
     {"exact", 1},
     {"dialect", 1},
     {"adaptive", 1}, /* From here on: may be missing, then 0. */
+    {"precision", 1},
 };
 
 enum { ROWS_ALWAYS = 12 };
@@ -210,7 +211,8 @@ static settings settings_of(const fl_params *p, fl_dialect dialect)
                       .solver = p->solver,
                       .exact = is_exact,
                       .dialect = dialect,
-                      .adaptive = p->is_adaptive};
+                      .adaptive = p->is_adaptive,
+                      .precision = p->precision};
 }
 
 static void settings_text(const settings *s, char *out, size_t out_bytes)
@@ -332,7 +334,8 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
     const char *end = texts[3] + strlen(texts[3]);
     if (!fl_camera_read_text(texts[1], strlen(texts[1]), &out->params.camera) ||
         !settings_read(texts[2], &s) || !fl_number_parse(texts[3], end, &samples) ||
-        !(samples >= 0.0 && samples < 1e9) || s.dialect >= FL_DIALECT_COUNT)
+        !(samples >= 0.0 && samples < 1e9) || s.dialect >= FL_DIALECT_COUNT ||
+        s.precision > FL_PRECISION_DOUBLE)
         return fl_error(diags, loc, "the firstlight keys of this picture are damaged");
     fl_params *p = &out->params;
     p->width = (uint32_t)s.size[0];
@@ -350,6 +353,7 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
     p->seed = (uint32_t)s.seed;
     p->solver = (fl_revolve_solver)s.solver;
     p->is_adaptive = s.adaptive != 0.0;
+    p->precision = (fl_precision)s.precision;
     out->is_exact = s.exact != 0.0;
     out->dialect = (fl_dialect)s.dialect;
     out->samples = (uint32_t)samples;
@@ -414,6 +418,7 @@ void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_param
     params->seed = from->seed;
     params->solver = from->solver;
     params->is_adaptive = from->is_adaptive;
+    params->precision = from->precision;
     if (state->lights && state->lights[0])
         apply_lights(state->lights, scene, params);
 }

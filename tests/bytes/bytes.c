@@ -58,6 +58,7 @@ static void set_params(const test_scene *test, const fl_scene *scene, fl_params 
     params->height = test->height;
     params->sampler = test->sampler;
     params->solver = test->solver;
+    params->precision = test->is_double ? FL_PRECISION_DOUBLE : FL_PRECISION_FLOAT;
     params->light_samples = test->lens_points;
     params->crop_x = test->crop[0];
     params->crop_y = test->crop[1];

@@ -12,6 +12,7 @@ typedef struct test_scene {
     uint32_t width, height, samples;
     fl_sampler sampler;
     fl_revolve_solver solver;
+    bool is_double;       /**< Rays in double. */
     bool is_exact;        /**< With the course's own rules (decision 22). */
     uint32_t crop[4];     /**< x, y, width, height; width 0: none. */
     uint32_t lens_points; /**< Shadow rays per disc light and hit; 0: as the text says. */

@@ -33,6 +33,7 @@ fl_params film_params(const test_scene *test, const fl_scene *scene)
     params.height = test->height;
     params.sampler = test->sampler;
     params.solver = test->solver;
+    params.precision = test->is_double ? FL_PRECISION_DOUBLE : FL_PRECISION_FLOAT;
     params.light_samples = test->lens_points;
     params.crop_x = test->crop[0];
     params.crop_y = test->crop[1];
