@@ -18,7 +18,8 @@ enum {
     ALL = FL_IN_ALL,
     REQ = FL_KEY_REQUIRED,
     REP = FL_KEY_REPEATS,
-    ABOVE = FL_KEY_ABOVE_LO
+    ABOVE = FL_KEY_ABOVE_LO,
+    FLT = FL_KEY_FLOAT
 };
 #define ANY -HUGE_VAL, HUGE_VAL
 #define UP  HUGE_VAL
@@ -87,9 +88,9 @@ static const fl_key view_keys[] = {
 };
 
 static const fl_key background_keys[] = {
-    NUM("color", COLOR, 3, ALL, 0, ANY, "linear RGB", "0.5 0.5 0.5",
+    NUM("color", COLOR, 3, ALL, FLT, ANY, "linear RGB", "0.5 0.5 0.5",
         "what a ray that hits nothing sees"),
-    NUM("ambientLight", AMBIENT_LIGHT, 3, ALL, 0, ANY, "linear RGB", "0 0 0",
+    NUM("ambientLight", AMBIENT_LIGHT, 3, ALL, FLT, ANY, "linear RGB", "0 0 0",
         "light that comes from everywhere; in the MIT dialects 1 1 1 when there are no lights"),
     FILENAME("cubeMap", CUBE_MAP, OURS | M12, 0,
              "folder with the pictures right left up down front back, seen instead of the color"),
@@ -108,7 +109,8 @@ static const fl_key group_keys[] = {
 };
 
 #define LIGHT_COLOR                                                                                \
-    NUM("color", COLOR, 3, ALL, REQ, ANY, "linear RGB", NULL, "what it sends out; may exceed 1")
+    NUM("color", COLOR, 3, ALL, REQ | FLT, ANY, "linear RGB", NULL,                                \
+        "what it sends out; may exceed 1")
 #define FADE_KEYS                                                                                  \
     NUM("falloff", FALLOFF, 1, OURS, 0, TO(0, UP), "1/unit^2", "0",                                \
         "k of color / (1 + k d^2) at the distance d"),                                             \
@@ -140,26 +142,27 @@ static const fl_key disk_light_keys[] = {
 };
 
 static const fl_key material_keys[] = {
-    NUM("diffuseColor", DIFFUSE, 3, ALL, 0, ANY, "", "1 1 1", "weight of light scattered evenly"),
-    NUM("specularColor", SPECULAR, 3, ALL, 0, ANY, "", "0 0 0",
+    NUM("diffuseColor", DIFFUSE, 3, ALL, FLT, ANY, "", "1 1 1", "weight of light scattered evenly"),
+    NUM("specularColor", SPECULAR, 3, ALL, FLT, ANY, "", "0 0 0",
         "weight of the highlight; in m12 of reflected rays too"),
-    NUM("shininess", SHININESS, 1, OURS | M12, 0, TO(0, UP), "", "0", "exponent of the highlight"),
-    TYPED(COLOR, "ambient", AMBIENT, 3, OURS, 0, ANY, "", NULL,
+    NUM("shininess", SHININESS, 1, OURS | M12, FLT, TO(0, UP), "", "0",
+        "exponent of the highlight"),
+    TYPED(COLOR, "ambient", AMBIENT, 3, OURS, FLT, ANY, "", NULL,
           "weight of the ambient light; without it the diffuse colour, texture included"),
-    TYPED(COLOR, "reflect", REFLECT, 3, OURS, 0, ANY, "", "0 0 0", "weight of the reflected ray"),
-    TYPED(COLOR, "refract", REFRACT, 3, OURS, 0, ANY, "", "0 0 0", "weight of the refracted ray"),
-    NUM("refractionIndex", REFRACTION_INDEX, 1, OURS, ABOVE, TO(0, UP), "", "1",
+    TYPED(COLOR, "reflect", REFLECT, 3, OURS, FLT, ANY, "", "0 0 0", "weight of the reflected ray"),
+    TYPED(COLOR, "refract", REFRACT, 3, OURS, FLT, ANY, "", "0 0 0", "weight of the refracted ray"),
+    NUM("refractionIndex", REFRACTION_INDEX, 1, OURS, FLT | ABOVE, TO(0, UP), "", "1",
         "index of refraction inside; outside is 1"),
     FILENAME("texture", TEXTURE, OURS | M12, 0, "picture that multiplies the diffuse colour"),
-    NUM("textureScale", TEXTURE_SCALE, 2, OURS, 0, ANY, "", "1 1",
+    NUM("textureScale", TEXTURE_SCALE, 2, OURS, FLT, ANY, "", "1 1",
         "planes: scene units per repeat; elsewhere repeats along u and v; not 0"),
     CHOICE("filter", FILTER, OURS, "bilinear", "bilinear nearest", "how texels are joined"),
-    NUM("refractionIndex", REFRACTION_INDEX, 1, M12, 0, TO(0, UP), "", "0", "0 is opaque"),
+    NUM("refractionIndex", REFRACTION_INDEX, 1, M12, FLT, TO(0, UP), "", "0", "0 is opaque"),
     FILENAME("bump", BUMP, M12, FL_KEY_IGNORED, "read and ignored, as the course does"),
-    NUM("exponent", SHININESS, 1, M04, 0, TO(0, UP), "", "1", "exponent of the highlight"),
-    NUM("reflectiveColor", REFLECT, 3, M04, 0, ANY, "", "0 0 0", "weight of the reflected ray"),
-    NUM("transparentColor", REFRACT, 3, M04, 0, ANY, "", "0 0 0", "weight of the refracted ray"),
-    NUM("indexOfRefraction", REFRACTION_INDEX, 1, M04, ABOVE, TO(0, UP), "", "1",
+    NUM("exponent", SHININESS, 1, M04, FLT, TO(0, UP), "", "1", "exponent of the highlight"),
+    NUM("reflectiveColor", REFLECT, 3, M04, FLT, ANY, "", "0 0 0", "weight of the reflected ray"),
+    NUM("transparentColor", REFRACT, 3, M04, FLT, ANY, "", "0 0 0", "weight of the refracted ray"),
+    NUM("indexOfRefraction", REFRACTION_INDEX, 1, M04, FLT | ABOVE, TO(0, UP), "", "1",
         "index of refraction inside"),
 };
 

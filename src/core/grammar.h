@@ -49,6 +49,7 @@ enum {
     FL_KEY_REPEATS = 2,   /**< May stand several times; order matters. */
     FL_KEY_ABOVE_LO = 4,  /**< The range excludes its lower end. */
     FL_KEY_TAKES_INF = 8, /**< `inf` is a value. */
+    FL_KEY_FLOAT = 32,    /**< Finite also as the float that it becomes. */
     FL_KEY_IGNORED = 16   /**< Read and checked, without effect. */
 };
 

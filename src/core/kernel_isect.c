@@ -110,8 +110,8 @@ static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
     fl_wm alive = chunk_alive(c, i), own = chunk_starts_on(c, i, instance->object);
     if (!fl_wm_any(alive))
         return;
-    bundle b = bundle_load(c, i);
-    b = bundle_transform(instance->to_object, &b);
+    const bundle world = bundle_load(c, i);
+    bundle b = bundle_transform(instance->to_object, &world);
     if (instance->kind == FL_OBJECT_REVOLUTION) {
         meet_revolution(j, c, i, &b, instance->index, instance->object, &no_shift, is_any);
         return;
@@ -121,7 +121,7 @@ static inline void meet_shape_instance(const job *j, chunk *c, uint32_t i,
     if (instance->kind == FL_OBJECT_PLANE)
         t = hit_plane(&g->planes, instance->index, &b, own);
     else if (instance->kind == FL_OBJECT_SPHERE)
-        t = hit_sphere(&g->spheres, instance->index, &b, own);
+        t = hit_sphere(&g->spheres, instance->index, &b, &world, &instance->to_object_exact, own);
     else
         t = hit_patch(&g->patches, instance->index, &b, own, fl_wf_load(c->t + i));
     chunk_accept(c, i, t, instance->object, is_any);
@@ -151,7 +151,7 @@ FL_INLINE void meet_baked(const job *j, chunk *c, uint32_t i, const bundle *b, f
     fl_wf t;
     if (kind == FL_OBJECT_SPHERE) {
         object = g->spheres.object[k];
-        t = hit_sphere(&g->spheres, k, b, chunk_starts_on(c, i, object));
+        t = hit_sphere(&g->spheres, k, b, b, NULL, chunk_starts_on(c, i, object));
     } else if (kind == FL_OBJECT_PLANE) {
         object = g->planes.object[k];
         t = hit_plane(&g->planes, k, b, chunk_starts_on(c, i, object));

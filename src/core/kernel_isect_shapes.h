@@ -16,11 +16,33 @@ FL_INLINE fl_wf hit_plane(const fl_planes *p, uint32_t k, const bundle *b, fl_wm
     return fl_wf_select(own, fl_wf_set(-1.0f), t);
 }
 
+/* Lanes of `own` whose ray left its sphere to the inside. Its origin was moved to the side that it
+ * leaves to by four roundings of the largest coordinate (resolve.c); rounding takes back 2 sqrt(3)
+ * of them at most, and in double nothing is added to that, so the side is certain where the slope
+ * is not. `exact`: to the space of the sphere, or NULL. */
+static __attribute__((noinline)) fl_wm starts_inside(const fl_spheres *s, uint32_t k,
+                                                     const bundle *world, const fl_affine *exact,
+                                                     fl_wm own)
+{
+    fl_wm inside = fl_wi_set(0);
+    double square = s->radius[k] * s->radius[k];
+    for (uint32_t lanes = fl_wm_bits(own); lanes; lanes &= lanes - 1) {
+        int i = __builtin_ctz(lanes);
+        fl_vec3 o = fl_v3((double)world->o[0][i], (double)world->o[1][i], (double)world->o[2][i]);
+        if (exact)
+            o = fl_affine_point(exact, o);
+        o = fl_v3_sub(o, s->center[k]);
+        inside[i] = fl_v3_dot(o, o) < square ? -1 : 0;
+    }
+    return inside;
+}
+
 /* Distance of the centre to the line by the perpendicular vector l, not by the discriminant's
  * difference of large squares, and both roots without cancellation [Haines, Gunther,
- * Akenine-Moller, Ray Tracing Gems, chapter 7]. A ray that starts on the sphere leaves it by the
- * exact chord. */
-FL_INLINE fl_wf hit_sphere(const fl_spheres *s, uint32_t k, const bundle *b, fl_wm own)
+ * Akenine-Moller, Ray Tracing Gems, chapter 7]. A ray that starts on the sphere and goes inward
+ * leaves it by the exact chord, however short. */
+FL_INLINE fl_wf hit_sphere(const fl_spheres *s, uint32_t k, const bundle *b, const bundle *world,
+                           const fl_affine *exact, fl_wm own)
 {
     const fl_wf none = fl_wf_set(-1.0f);
     fl_wf f[3] = {b->o[0] - s->cx[k], b->o[1] - s->cy[k], b->o[2] - s->cz[k]};
@@ -37,7 +59,12 @@ FL_INLINE fl_wf hit_sphere(const fl_spheres *s, uint32_t k, const bundle *b, fl_
     fl_wf first = fl_wf_min(t0, t1), last = fl_wf_max(t0, t1);
     fl_wf t = fl_wf_select(first > 0.0f, first, last);
     t = fl_wf_select(meets, t, none);
-    return fl_wf_select(own, middle + middle, t);
+    if (fl_wm_any(own)) {
+        fl_wf chord = fl_wf_select(middle > 0.0f, middle + middle, fl_wf_set(0x1p-126f));
+        t = fl_wf_select(own, fl_wf_select(starts_inside(s, k, world, exact, own), chord, -chord),
+                         t);
+    }
+    return t;
 }
 
 /* best: nothing beyond it counts. */

@@ -2,6 +2,9 @@
  *
  * Lights and materials, with what each course means by its keys.
  */
+#include <float.h>
+#include <math.h>
+
 #include "core/parse_build.h"
 
 /* The three ways to fade with the distance d, as the divisor a0 + a1 d + a2 d^2. */
@@ -107,9 +110,9 @@ void fl_build_material(fl_builder *b, const fl_node *node, fl_material *out_mate
     fl_build_numbers(b, node, FL_KEY_TEXTURE_SCALE, scale);
     material.texture_scale[0] = scale[0];
     material.texture_scale[1] = scale[1];
-    if (scale[0] == 0.0 || scale[1] == 0.0)
+    if (fabs(scale[0]) < (double)FLT_MIN || fabs(scale[1]) < (double)FLT_MIN)
         fl_error(b->diags, fl_build_loc(b, fl_node_key(node, FL_KEY_TEXTURE_SCALE)),
-                 "'textureScale' must not be 0");
+                 "'textureScale' must not be 0, nor below 1.2e-38, as a float is");
     if ((key = fl_node_key(node, FL_KEY_TEXTURE)))
         material.image = fl_build_image_file(b, key);
     if (b->tree->dialect == FL_DIALECT_M12)

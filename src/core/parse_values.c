@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/parse_values.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -78,6 +79,11 @@ static bool check_number(fl_tree_parser *p, const fl_key *key, double value)
                         (int)p->token.bytes, p->token.text);
     bool is_in = value >= key->lo && value <= key->hi &&
                  !((key->flags & FL_KEY_ABOVE_LO) && value == key->lo);
+    bool is_float = fabs(value) <= (double)FLT_MAX &&
+                    (!(key->flags & FL_KEY_ABOVE_LO) || value >= (double)FLT_MIN);
+    if (is_in && (key->flags & FL_KEY_FLOAT) && !is_float)
+        return fl_error(p->diags, here(p), "'%s' must fit in a float (1.2e-38 to 3.4e38), got %.*s",
+                        key->name, (int)p->token.bytes, p->token.text);
     if (is_in)
         return true;
     char range[RANGE_BYTES];
