@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/study_extremes.h"
 #include "cli/study_write.h"
 
 enum { SIDE_DEFAULT = 128, SAMPLES_DEFAULT = 64, REPEATS_DEFAULT = 4 };
@@ -135,6 +136,8 @@ static int unknown_knob(const char *word)
 
 int cli_command_study(const cli_options *options)
 {
+    if (cli_has(options, CLI_OPT_EXTREMES))
+        return study_extremes(options);
     if (options->path_count != 1)
         return cli_usage_error(CLI_STUDY, "expected one scene, got %u", options->path_count);
     if (!options->out_dir)

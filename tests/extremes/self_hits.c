@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * usage: self_hits [RAYS]     rays a kind of primitive, default 1e6
+ *
+ * Rays that leave a surface as the renderer lets them leave (decision 13): how many meet again what
+ * they cannot meet (false), and how many miss what they must meet (lost). Scales 1e-6, 1, 1e6; 0,
+ * 1e3 and 1e5 sizes from the world's origin; a quarter of the directions graze. Convex and flat
+ * shapes know the answer; for the others it is that of double precision, except within a float's
+ * rounding (judge_by_double). Exit 1 if there is any.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/extremes.h"
+#include "core/double_trace.h"
+#include "core/trace_piece.h"
+
+enum { PIECE = 1024 };
+
+typedef enum truth { NEVER, CONVEX, BY_DOUBLE } truth;
+
+typedef struct kind {
+    const char *name, *object;
+    truth truth;
+    fl_vec3 center; /* Of the first object, where it is not the origin and 1. */
+    double radius;
+} kind;
+
+#define VASE                                                                                       \
+    "RevSurface { profile BezierCurve { controls [0.3 -1 0][1.6 -0.5 0][-0.4 0.5 0][0.9 1 0] } }"
+#define RING                                                                                       \
+    "RevSurface { profile BezierCurve { piecewise 1 controls [0.9 0 0][0.9 0.133 0][0.8 0.2 0]"    \
+    "[0.7 0.2 0][0.57 0.2 0][0.5 0.1 0][0.5 0 0][0.5 -0.1 0][0.57 -0.2 0][0.7 -0.2 0]"             \
+    "[0.8 -0.2 0][0.9 -0.133 0][0.9 0 0] } }"
+#define TILT(object) "Transform { Rotate { 1 2 3 77 } Scale 1 0.05 0.7 " object " }"
+/* With something on the other side, so that the geometry's origin stays between them. */
+#define FAR_OFF(object) "Transform { Translate 30 -70 50 UniformScale 0.5 " object " }"
+#define SPHERE          "Sphere { center 0 0 0 radius 1 }"
+#define BALL            "TriangleMesh { file ball.obj normals flat }"
+
+static const kind kinds[] = {
+    {"sphere", SPHERE, CONVEX, {0, 0, 0}, 0},
+    {"sphere, transformed", TILT(SPHERE), CONVEX, {0, 0, 0}, 0},
+    {"sphere, off the origin",
+     FAR_OFF(SPHERE) " Sphere { center -60 50 -40 radius 0.3 }",
+     CONVEX,
+     {30, -70, 50},
+     0.5},
+    {"the same, transformed",
+     FAR_OFF(TILT(SPHERE)) " Sphere { center -60 50 -40 radius 0.3 }",
+     CONVEX,
+     {30, -70, 50},
+     0.5},
+    {"plane", "Plane { normal 0.3 1 -0.2 offset 0.1 }", NEVER, {0, 0, 0}, 0},
+    {"square", "Square { corner -1 -1 0.2 u 2 0 0.3 v 0 2 -0.1 }", NEVER, {0, 0, 0}, 0},
+    {"disk", "Disk { center 0.1 0 0 normal 1 2 3 radius 1 }", NEVER, {0, 0, 0}, 0},
+    {"triangle",
+     "Triangle { vertex0 -1 -1 0 vertex1 1 -1 0.2 vertex2 0 1 -0.1 }",
+     NEVER,
+     {0, 0, 0},
+     0},
+    {"mesh, convex", BALL, CONVEX, {0, 0, 0}, 0},
+    {"mesh, transformed",
+     TILT(BALL),
+     BY_DOUBLE,
+     {0, 0, 0},
+     0}, /* its rim is thinner than rounding */
+    {"triangles in a valley",
+     "Triangle { vertex0 -1 0 0 vertex1 1 0 0 vertex2 -1 0.7 1 } Triangle { vertex0 1 0 0 vertex1 "
+     "1 0.7 1 vertex2 -1 0.7 1 } Triangle { vertex0 -1 0 0 vertex1 -1 0.6 -1 vertex2 1 0 0 } "
+     "Triangle { vertex0 1 0 0 vertex1 -1 0.6 -1 vertex2 1 0.6 -1 }",
+     BY_DOUBLE,
+     {0, 0, 0},
+     0},
+    {"revolution, vase", VASE, BY_DOUBLE, {0, 0, 0}, 0},
+    {"revolution, ring", RING, BY_DOUBLE, {0, 0, 0}, 0},
+    {"revolution, transformed", TILT(VASE), BY_DOUBLE, {0, 0, 0}, 0},
+};
+
+typedef struct tally {
+    uint64_t rays, false_hits, lost_hits, excused;
+    double worst_chord; /* Relative error of a sphere's exit chord, steeper than 1 : 100. */
+} tally;
+
+typedef struct bench {
+    fl_compiled *compiled;
+    fl_vec3 center; /* Of the object, in the space of the geometry. */
+    double size;
+    fl_piece piece;
+    uint64_t random;
+} bench;
+
+static double unit(bench *b)
+{
+    b->random = b->random * 6364136223846793005u + 1442695040888963407u;
+    return (double)(b->random >> 40) * 0x1p-24;
+}
+
+static fl_vec3 direction(bench *b)
+{
+    for (;;) {
+        fl_vec3 v = fl_v3(2 * unit(b) - 1, 2 * unit(b) - 1, 2 * unit(b) - 1);
+        double square = fl_v3_dot(v, v);
+        if (square > 1e-4 && square < 1.0)
+            return fl_v3_scale(v, 1.0 / sqrt(square));
+    }
+}
+
+static bool open_bench(bench *b, const kind *k, double scale, double distance)
+{
+    char text[2048];
+    fl_diags diags = {0};
+    snprintf(text, sizeof text,
+             "firstlight 1\nMaterials { Material { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 "
+             "%s }\n",
+             k->object);
+    double far = distance * scale;
+    fl_vec3 offset = fl_v3(far, -0.7 * far, 0.3 * far);
+    fl_scene *scene =
+        fl_scene_parse(text, strlen(text), k->name, &(fl_parse_options){0}, &extreme_files, &diags);
+    if (scene && fl_scene_map(scene, scale, offset, &diags))
+        b->compiled = fl_compile(scene, &(fl_compile_options){0}, NULL, &diags);
+    for (uint32_t i = 0; i < diags.count; i++)
+        fprintf(stderr, "self_hits: %s: %s\n", k->name, diags.items[i].message);
+    fl_scene_destroy(scene);
+    fl_diags_deinit(&diags);
+    if (!b->compiled || !fl_piece_init(&b->piece, PIECE))
+        return false;
+    b->center = fl_v3_sub(fl_v3_mad(offset, k->center, scale), b->compiled->geometry.origin);
+    b->size = scale * (k->radius > 0.0 ? k->radius : 1.0);
+    return true;
+}
+
+static void close_bench(bench *b)
+{
+    fl_piece_deinit(&b->piece);
+    fl_compiled_release(b->compiled);
+}
+
+/* Camera rays that meet the object or pass it by, and the surfaces where they do. */
+static void first_hits(bench *b)
+{
+    fl_isect_context context = {0};
+    const fl_isect_kernels *kernels = fl_trace_kernels(b->compiled);
+    for (uint32_t i = 0; i < PIECE; i++) {
+        double away = i % 8 == 0 ? 100.0 : 3.0;
+        fl_vec3 from = fl_v3_mad(b->center, direction(b), away * b->size);
+        fl_vec3 to = fl_v3_mad(b->center, direction(b), b->size * unit(b));
+        fl_piece_set_ray(&b->piece.rays, i, from, fl_v3_sub(to, from), INFINITY);
+    }
+    fl_piece_set_count(&b->piece.rays, PIECE);
+    kernels->nearest(&b->compiled->geometry, &b->piece.rays, &b->piece.hits, &context);
+    kernels->resolve(&b->compiled->geometry, &b->piece.rays, &b->piece.hits, NULL,
+                     &b->piece.surface, &context);
+}
+
+static fl_vec3 vec(const float *x, const float *y, const float *z, uint32_t i)
+{
+    return fl_v3((double)x[i], (double)y[i], (double)z[i]);
+}
+
+/* A ray that left, and what is known about where from. */
+typedef struct leaving {
+    fl_double_ray first;
+    fl_vec3 p, ng, d;
+    double offset;
+    uint32_t object, prim;
+} leaving;
+
+/* Replace the rays of the piece by rays that leave where they hit; returns how many. */
+static uint32_t leave(bench *b, leaving *out)
+{
+    fl_rays *r = &b->piece.rays;
+    const fl_surface *s = &b->piece.surface;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < PIECE; i++) {
+        uint32_t object = b->piece.hits.object[i];
+        if (object == FL_NONE)
+            continue;
+        leaving *l = &out[count];
+        l->first = (fl_double_ray){vec(r->ox, r->oy, r->oz, i), vec(r->dx, r->dy, r->dz, i),
+                                   HUGE_VAL, FL_NONE, FL_NONE};
+        l->object = object;
+        l->prim = b->piece.hits.prim[i];
+        l->p = vec(s->px, s->py, s->pz, i);
+        l->ng = vec(s->ngx, s->ngy, s->ngz, i);
+        l->offset = (double)s->offset[i];
+        fl_vec3 d = direction(b);
+        if (i % 4 == 3) { /* graze */
+            double up = fl_v3_dot(d, l->ng);
+            d = fl_v3_mad(d, l->ng, up * (unit(b) < 0.5 ? 1e-2 : 1e-4) - up);
+        }
+        const double x[3] = {d.x, d.y, d.z};
+        l->d = fl_v3((double)(float)x[0], (double)(float)x[1], (double)(float)x[2]);
+        count++;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        const leaving *l = &out[i];
+        double step = copysign(l->offset, fl_v3_dot(l->ng, l->d));
+        fl_piece_set_ray(r, i, fl_v3_mad(l->p, l->ng, step), l->d, INFINITY);
+        r->source_object[i] = l->object;
+        r->source_prim[i] = l->prim;
+    }
+    fl_piece_set_count(r, count);
+    return count;
+}
+
+/* Where the ray left from, in double; false: its camera ray met something else there. */
+static bool first_in_double(const bench *b, const leaving *l, fl_double_hit *hit,
+                            fl_double_surface *out)
+{
+    fl_isect_context context = {0};
+    const fl_geometry *g = &b->compiled->geometry;
+    if (!fl_double_nearest(g, &l->first, &context, hit) || hit->object != l->object ||
+        hit->prim != l->prim)
+        return false;
+    fl_double_resolve(g, &l->first, hit, false, out);
+    return true;
+}
+
+/* Whether, and how far along the ray, it meets anything when it leaves in double: moved in
+ * direction by (x, y) and started as far out as the float renderer does, if asked. */
+static bool meets_in_double(const bench *b, const leaving *l, const fl_double_surface *s,
+                            const double move[3], double *out_t)
+{
+    fl_isect_context context = {0};
+    fl_double_hit hit;
+    fl_vec3 side = fl_v3_normalize(fl_v3_cross(l->d, fl_v3(0.3, 0.5, 0.8)));
+    fl_vec3 d = fl_v3_mad(fl_v3_mad(l->d, side, move[0]), fl_v3_cross(l->d, side), move[1]);
+    double step = copysign(move[2] > 0.0 ? l->offset : s->offset, fl_v3_dot(s->ng, l->d));
+    fl_double_ray ray = {fl_v3_mad(s->p, s->ng, step), d, HUGE_VAL, l->object, l->prim};
+    bool is_hit = fl_double_nearest(&b->compiled->geometry, &ray, &context, &hit);
+    *out_t = is_hit ? hit.t : 0.0;
+    return is_hit;
+}
+
+/* Rounding decides, and nothing is counted, where the two normals disagree about the side that the
+ * ray leaves to, where the true hit is within sixteen times the height at which a float origin
+ * stands, and where the answer changes as the ray moves a little. */
+static void judge_by_double(const bench *b, const leaving *l, bool is_hit, tally *t)
+{
+    static const double moves[][3] = {{2e-6, 0, 0}, {-2e-6, 0, 0}, {0, 2e-6, 0}, {0, -2e-6, 0},
+                                      {0, 0, 1},    {1e-5, 0, 1},  {-1e-5, 0, 1}};
+    static const double none[3] = {0};
+    fl_double_hit first;
+    fl_double_surface s;
+    double distance, slope = fabs(fl_v3_dot(l->ng, l->d));
+    if (!first_in_double(b, l, &first, &s)) {
+        t->excused++;
+        return;
+    }
+    bool is_true = meets_in_double(b, l, &s, none, &distance);
+    if (is_true == is_hit)
+        return;
+    bool is_excused = slope <= fl_v3_length(fl_v3_sub(s.ng, l->ng)) + 2e-7 ||
+                      (is_true && distance <= 16.0 * l->offset);
+    for (size_t k = 0; k < FL_COUNT_OF(moves) && !is_excused; k++)
+        is_excused = meets_in_double(b, l, &s, moves[k], &distance) == is_hit;
+    t->excused += is_excused ? 1 : 0;
+    t->false_hits += !is_excused && is_hit ? 1 : 0;
+    t->lost_hits += !is_excused && !is_hit ? 1 : 0;
+}
+
+static void judge(const bench *b, const kind *k, const leaving *l, uint32_t i, tally *t)
+{
+    const fl_hits *hits = &b->piece.hits;
+    bool is_hit = hits->object[i] == l->object, is_outward = fl_v3_dot(l->ng, l->d) > 0.0;
+    t->rays++;
+    if (k->truth == BY_DOUBLE) {
+        judge_by_double(b, l, hits->object[i] != FL_NONE, t);
+        return;
+    }
+    bool must_hit = k->truth == CONVEX && !is_outward;
+    t->false_hits += is_hit && !must_hit ? 1 : 0;
+    t->lost_hits += !is_hit && must_hit ? 1 : 0;
+    if (k == &kinds[0] && must_hit && is_hit) {
+        fl_vec3 n = fl_v3_normalize(fl_v3_sub(l->p, b->center));
+        double slope = -fl_v3_dot(n, l->d), chord = 2.0 * b->size * slope / fl_v3_dot(l->d, l->d);
+        double error = fabs((double)hits->t[i] - chord) / chord;
+        if (slope > 1e-2 && error > t->worst_chord)
+            t->worst_chord = error;
+    }
+}
+
+static bool run_kind(const kind *k, uint64_t rays, tally *t)
+{
+    static const double scales[] = {1e-6, 1.0, 1e6}, distances[] = {0.0, 1e3, 1e5};
+    static leaving all[PIECE];
+    for (int place = 0; place < 9; place++) {
+        bench b = {.random = 1234567u + (uint64_t)place};
+        if (!open_bench(&b, k, scales[place / 3], distances[place % 3])) {
+            close_bench(&b);
+            return false;
+        }
+        uint64_t until = rays * ((uint64_t)place + 1) / 9;
+        fl_isect_context context = {0};
+        while (t->rays < until) {
+            first_hits(&b);
+            uint32_t count = leave(&b, all);
+            fl_trace_kernels(b.compiled)
+                ->nearest(&b.compiled->geometry, &b.piece.rays, &b.piece.hits, &context);
+            for (uint32_t i = 0; i < count; i++)
+                judge(&b, k, &all[i], i, t);
+        }
+        close_bench(&b);
+    }
+    return true;
+}
+
+int main(int argc, char **argv)
+{
+    uint64_t rays = argc > 1 ? (uint64_t)atof(argv[1]) : 1000000, wrong = 0;
+    for (size_t i = 0; i < FL_COUNT_OF(kinds); i++) {
+        tally t = {0};
+        if (!run_kind(&kinds[i], rays, &t))
+            return 2;
+        printf("%-26s %10llu rays, %llu false, %llu lost", kinds[i].name,
+               (unsigned long long)t.rays, (unsigned long long)t.false_hits,
+               (unsigned long long)t.lost_hits);
+        if (kinds[i].truth == BY_DOUBLE)
+            printf(", %llu within rounding", (unsigned long long)t.excused);
+        if (i == 0)
+            printf(", exit chord off by %.1e at most", t.worst_chord);
+        putchar('\n');
+        fflush(stdout);
+        wrong += t.false_hits + t.lost_hits + (t.worst_chord > 1e-4 ? 1 : 0);
+    }
+    return wrong ? 1 : 0;
+}
