@@ -23,7 +23,7 @@ typedef struct extreme_family {
     const char *const
         *values; /**< NULL at the end; fields separated by '|'; a leading '!': slow. */
     extreme_judge judge;
-    double bound;     /**< Largest relative rmse of the pixels that agree; 0: 1e-4. */
+    double bound;     /**< Largest relative rmse of the pixels that agree; 0: 1e-6. */
     uint32_t off_max; /**< Pixels that may be off, on edges; of the picture's 1,728. */
     uint32_t samples; /**< 0: 4. */
 } extreme_family;

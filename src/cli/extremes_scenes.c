@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The rows of `study --extremes`. Bounds are not wishes: each is at most about four times what was
- * measured when it was set, and says why where it is far from rounding.
+ * The rows of `study --extremes`. Bounds are not wishes: each is a few times what was measured when
+ * it was set, at least 1e-6 and two pixels, and says why where it is far from rounding.
  */
 #include "cli/extremes.h"
 
@@ -56,11 +56,13 @@ const extreme_family extreme_families[] = {
      .text = WORLD,
      .values = VALUES("1e-6", "1e-4", "1e-2", "1e2", "1e4", "1e6"),
      .judge = EXTREME_SCALED,
+     .bound = 0.0002,
      .off_max = 6},
     {.name = "scene moved, x size",
      .text = WORLD,
      .values = VALUES("1e3", "1e5", "1e7"),
      .judge = EXTREME_MOVED,
+     .bound = 0.0002,
      .off_max = 6},
     /* --- Spheres --- */
     {.name = "sphere radius",
@@ -69,13 +71,13 @@ const extreme_family extreme_families[] = {
                   "0 0 radius @0 } }\n",
      .values = VALUES("1e-6|1.5e-6|4e-6", "1e-3|1.5e-3|4e-3", "1|1.5|4", "1e3|1.5e3|4e3",
                       "1e6|1.5e6|4e6", "1e8|1.5e8|4e8"),
-     .off_max = 4},
+     .off_max = 2},
     {.name = "sphere seen from, radii",
      .text = HEAD "PerspectiveCamera { center 0 0 @0 direction 0 0 -1 up 0 1 0 angle @1 }\n" SKY SUN
                   "Materials { " RED " }\nGroup { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } "
                   "}\n",
      .values = VALUES("1e2|1.5", "1e3|0.15", "1e4|0.015"),
-     .off_max = 8},
+     .off_max = 2},
     {.name = "5 above a sphere of radius",
      .text =
          HEAD "PerspectiveCamera { center 0 5 12 direction 0 -0.4 -1 up 0 1 0 angle 40 }\n" SKY SUN
@@ -83,7 +85,7 @@ const extreme_family extreme_families[] = {
               "MaterialIndex 0 Sphere { center 0 -@0 0 radius @0 } MaterialIndex 1 Sphere { "
               "center 0 1 0 radius 1 } }\n",
      .values = VALUES("1e2", "1e3", "1e4", "1e5", "1e6"),
-     .off_max = 8},
+     .off_max = 2},
     {.name = "mirror ball on a ball of radius",
      .text =
          HEAD "PerspectiveCamera { center 0 5 12 direction 0 -0.4 -1 up 0 1 0 angle 40 }\n" SKY SUN
@@ -92,7 +94,8 @@ const extreme_family extreme_families[] = {
               "MaterialIndex 0 Sphere { center 0 -@0 0 radius @0 } MaterialIndex 1 Sphere { "
               "center 0 1 0 radius 1 } }\n",
      .values = VALUES("1e2", "1e4", "1e6"),
-     .off_max = 8},
+     .bound = 0.0003,
+     .off_max = 2},
     /* --- Triangles --- */
     {.name = "needles 1:1e6, seen at height",
      .text =
@@ -100,14 +103,14 @@ const extreme_family extreme_families[] = {
               "Materials { " RED " }\nGroup { MaterialIndex 0 TriangleMesh { file "
               "needle.obj normals flat } }\n",
      .values = VALUES("4", "1e-2", "1e-5"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "triangle of 1 by",
      .text = HEAD "OrthographicCamera { center 0 0 3 direction 0 0 -1 up 0 1 0 size @1 }\n" SKY SUN
                   "Materials { " RED " }\nGroup { MaterialIndex 0 Triangle { vertex0 -1 0 0 "
                   "vertex1 1 0 0 vertex2 0 @0 0 } Triangle { vertex0 -1 0 0 vertex1 0 -@0 0 "
                   "vertex2 1 0 0 } }\n",
      .values = VALUES("1e-2|0.03", "1e-4|3e-4", "1e-6|3e-6"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "aimed at corners and edges, scale",
      .values = VALUES("1|200000", "1e-6|200000", "1e6|200000", "!1|100000000"),
      .judge = EXTREME_RAYS},
@@ -128,26 +131,27 @@ const extreme_family extreme_families[] = {
          VALUES("0 0.2 8|0 0 -1|0 1 0", "0 0.2 8|-0 -0 -1|0 1 0", "8 0.2 0|-1 0 0|0 1 0",
                 "0 8 0.1|0 -1 0|0 0 -1", "0 8 0.1|0 -1 -0|0 0 -1", "0 0.2 8|1e-310 1e-310 -1|0 1 0",
                 "0 0.2 8|1e-30 -1e-30 -1|0 1 0", "0 0.2 8|1e-8 1e-12 -1|0 1 0"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "camera above a plane by",
      .text = HEAD
      "PerspectiveCamera { center 0 @0 5 direction 0 0 -1 up 0 1 0 angle 40 }\n" SKY SUN MATERIALS
      "Group { MaterialIndex 1 Plane { normal 0 1 0 offset 0 } Sphere { "
      "center 0 1 -3 radius 1 } }\n",
      .values = VALUES("1", "1e-3", "1e-6", "1e-9", "0"),
-     .off_max = 8},
+     .off_max = 2},
     {.name = "grazing a square at slope",
      .text =
          HEAD "OrthographicCamera { center 0 0 5 direction 0 -@0 -1 up 0 1 0 size @1 }\n" SKY SUN
               "Materials { " RED " }\nGroup { MaterialIndex 0 Square { corner -2 -@0 -2 u 4 0 "
               "0 v 0 0 4 } }\n",
      .values = VALUES("1e-2|0.3", "1e-4|3e-3", "1e-6|3e-5"),
-     .off_max = 40}, /* The far edge is as wide as the rounding of an origin at 5: 3e-7 of 1e-6. */
+     .off_max = 2},
     {.name = "tangent to a ball, view of",
      .text = HEAD "OrthographicCamera { center 1 0 4 direction 0 0 -1 up 0 1 0 size @0 }\n" SKY SUN
                   "Materials { " RED " }\nGroup { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } "
                   "}\n",
      .values = VALUES("1e-1", "1e-3", "1e-5"),
+     .bound = 2e-05,
      .off_max = 60}, /* At 1e-5 a float step of the origin is a third of a pixel. */
     /* --- Lens --- */
     {.name = "focus",
@@ -156,34 +160,35 @@ const extreme_family extreme_families[] = {
                "aperture @1 focus @0 }\n",
                SUN, RED),
      .values = VALUES("1e-6|1e-7", "1e-3|1e-4", "7|0.1", "1e6|0.1", "1e20|0.1", "inf|0.1"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "aperture",
      .text =
          STAGE("PerspectiveCamera { center 0.3 1.4 7 direction -0.03 -0.15 -1 up 0 1 0 angle 40 "
                "aperture @0 focus 7 }\n",
                SUN, RED),
      .values = VALUES("0", "1e-9", "1e-3", "1", "1e3"),
-     .off_max = 6},
+     .bound = 2e-05,
+     .off_max = 2},
     {.name = "aperture of the size of a city",
      .text =
          STAGE("PerspectiveCamera { center 0.3 1.4 7 direction -0.03 -0.15 -1 up 0 1 0 angle 40 "
                "aperture @0 focus 7 }\n",
                SUN, RED),
      .values = VALUES("1e4", "1e6"),
-     .bound = 2e-3, /* A ray begins up to 1e6 away, where a float steps by 1/16. */
+     .bound = 0.002,
      .off_max = 700},
     {.name = "field of view, degrees",
      .text = STAGE("PerspectiveCamera { center 0.3 1.4 7 direction -0.2143 -0.2 -1 up 0 1 0 angle "
                    "@0 }\n",
                    SUN, RED),
      .values = VALUES("0.01", "0.1", "1", "90", "170", "179"),
-     .off_max = 6},
+     .off_max = 2},
     /* --- Glass --- */
     {.name = "refraction index",
      .text = STAGE(CAMERA, SUN,
                    "Material { diffuseColor 0 0 0 reflect 0.1 refract 0.9 refractionIndex @0 }"),
      .values = VALUES("1", "1.000001", "0.999999", "1e-3", "0.5", "1.5", "1e3"),
-     .off_max = 20}, /* A ball of index 1e3 magnifies a rounding of the ray a thousandfold. */
+     .off_max = 2},
     {.name = "critical angle, rad",
      .text = HEAD "PerspectiveCamera { center 0 -1 0 direction @1 up 0 0 1 angle 0.01 }\n" SKY SUN
                   "Materials { Material { diffuseColor 0 0 0 refract 1 refractionIndex 1.5 } "
@@ -195,14 +200,14 @@ const extreme_family extreme_families[] = {
                       "0|0.66666666666666663 0.7453559924999299 0",
                       "1e-6|0.66666741202232582 0.74535532583289055 0",
                       "1e-3|0.66741168920163507 0.74468895326640916 0"),
-     .off_max = 12},
+     .off_max = 2},
     /* --- Shading --- */
     {.name = "shininess",
      .text = STAGE(CAMERA, SUN,
                    "Material { diffuseColor 0.2 0.1 0.1 specularColor 1 1 1 shininess "
                    "@0 }"),
      .values = VALUES("0", "1e-6", "1", "1e3", "1e6"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "bounces between mirrors",
      .text = HEAD "PerspectiveCamera { center 0 0 0.9 direction 0.3 0.1 -1 up 0 1 0 angle 70 }\n"
                   "Render { depth @0 weightThreshold 0 }\n" SKY SUN
@@ -211,14 +216,14 @@ const extreme_family extreme_families[] = {
                   "corner -3 -3 1 u 0 6 0 v 6 0 0 } MaterialIndex 1 Sphere { center 0.3 0.1 -0.3 "
                   "radius 0.3 } }\n",
      .values = VALUES("0", "1", "5", "16", "64"),
-     .off_max = 12},
+     .off_max = 2},
     {.name = "colour",
      .text = STAGE(CAMERA,
                    "Lights { PointLight { position 3 5 4 color @1 @1 @1 } DirectionalLight { "
                    "direction 0 -1 -1 color 0.3 0.3 0.3 } }\n",
                    "Material { diffuseColor @0 @0 @0 specularColor @0 0 0 shininess 20 }"),
      .values = VALUES("-1|1", "1|-1", "5|5", "1e10|1e10", "1e18|1e18", "1e-20|1", "1e-320|1"),
-     .off_max = 6},
+     .off_max = 2},
     /* --- Lights --- */
     {.name = "light radius",
      .text = STAGE(CAMERA,
@@ -226,7 +231,7 @@ const extreme_family extreme_families[] = {
                    "0.8 samples 4 } }\n",
                    RED),
      .values = VALUES("0", "1e-9", "1", "1e3", "1e6"),
-     .off_max = 6},
+     .off_max = 2},
     {.name = "light at",
      .text = STAGE(CAMERA,
                    "Lights { PointLight { position @0 color 0.8 0.8 0.8 } DiskLight { "
@@ -234,7 +239,8 @@ const extreme_family extreme_families[] = {
                    RED),
      .values =
          VALUES("0 -1 1", "0 -0.999999 1", "-1.2 1 0", "-1.2 1.000001 0", "0 1e6 0", "0 1e12 0"),
-     .off_max = 20},
+     .bound = 0.00015,
+     .off_max = 2},
     {.name = "light inside a glass ball of index",
      .text = HEAD CAMERA "Render { transparentShadows 1 }\n" SKY
                          "Lights { PointLight { position 0 0.2 0 color 0.9 0.9 0.8 } DiskLight { "
@@ -244,7 +250,7 @@ const extreme_family extreme_families[] = {
                          "Group { MaterialIndex 0 " FLOOR "MaterialIndex 1 Sphere { center 0 0 0 "
                          "radius 0.8 } }\n",
      .values = VALUES("1", "1.5", "0.7"),
-     .off_max = 8},
+     .off_max = 2},
     {.name = "light samples",
      .text =
          STAGE("PerspectiveCamera { center 0.3 1.4 7 direction -0.03 -0.15 -1 up 0 1 0 angle 40 "
@@ -262,6 +268,7 @@ const extreme_family extreme_families[] = {
                "width 1 height 1 }\nRender { samples @0 }\n",
                SUN, RED),
      .values = VALUES("1", "1000", "100000", "!10000000"),
+     .bound = 3e-05,
      .off_max = 0},
     {.name = "picture of",
      .text =
@@ -279,14 +286,15 @@ const extreme_family extreme_families[] = {
      "Square { corner -1 0.8 0 u 2 0 0 v 0 1 0 } }\n",
      .values = VALUES("1x1.png|nearest", "1x1.png|bilinear", "2x1.png|nearest", "2x1.png|bilinear",
                       "wide.png|bilinear", "tall.png|bilinear", "!large.png|bilinear"),
-     .off_max = 30}, /* Nearest texels have edges; 16,384 texels a turn are finer than a pixel. */
+     .bound = 0.00015,
+     .off_max = 8}, /* 16,384 texels a turn are finer than a pixel. */
     {.name = "repeats of a texture",
      .text = HEAD CAMERA SKY SUN
      "Materials { Material { texture checker.png textureScale @0 @0 } Material { texture "
      "checker.png textureScale @1 @1 } }\nGroup { MaterialIndex 0 " FLOOR "MaterialIndex 1 "
      "Square { corner -1 0.4 0 u 2 0 0 v 0 1 0 } Sphere { center 1.3 -0.3 0.8 radius 0.7 } }\n",
      .values = VALUES("1e6|1e-6", "1|-1", "0.1|10", "0.01|1000"),
-     .bound = 2e-3, /* 1,000 repeats of 64 texels: a step of u is 1/250 of a texel there. */
+     .bound = 0.002,
      .off_max = 150},
     {.name = "poles and seams, looking",
      .text = HEAD "OrthographicCamera { center @0 direction @1 up @2 size 0.02 }\n" SKY SUN
@@ -295,8 +303,8 @@ const extreme_family extreme_families[] = {
                   "BezierCurve { controls [0 0 0][1 0 0][1 1 0][0 1 0] } } } }\n",
      .values = VALUES("0 0 1.5|0 0 -1|0 1 0", "0 0 -1.5|0 0 1|0 1 0", "1.5 0 0|-1 0 0|0 0 1",
                       "0 3 2.5|0 -1 0|0 0 1", "2 1 2.5|-1 0 0|0 1 0"),
-     .bound = 1e-3, /* At a pole u turns through all its values within a float step of the point. */
-     .off_max = 16},
+     .bound = 5e-05, /* At a pole u turns through all its values within a step of the point. */
+     .off_max = 2},
     /* --- What cannot be rendered says so --- */
     {.name = "refused: focus",
      .text = STAGE("PerspectiveCamera { center 0 0 7 direction 0 0 -1 up 0 1 0 angle 40 aperture "

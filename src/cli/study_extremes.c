@@ -16,7 +16,7 @@
 
 enum { WIDTH = 48, HEIGHT = 36, SAMPLES = 4, FIELDS_MAX = 10, TEXT_MAX = 8192, SIZE_UNITS = 10 };
 
-static const double bound_default = 1e-4;
+static const double bound_default = 1e-6;
 /* A pixel is off when it differs by more than this part of the picture's root mean square. */
 static const double off_share = 1.0 / 256.0;
 /* Pictures beyond this are refused here, so that a row does not fill a small machine. */
