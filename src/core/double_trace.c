@@ -247,13 +247,13 @@ typedef struct leaves {
 
 static void meet_leaf(search *s, const fl_bvh *bvh, uint32_t child, const leaves *l)
 {
-    const uint32_t *items = &bvh->items[(size_t)FL_BVH_LEAF_INDEX(child) * FL_BVH_WIDTH];
+    uint32_t leaf = FL_BVH_LEAF_INDEX(child);
     for (uint32_t i = 0; i < FL_BVH_LEAF_COUNT(child) && !s->is_over; i++) {
-        if (l->n) {
-            meet_face(s, l->n, l->mesh, l->object, items[i]);
+        if (l->n) { /* A mesh keeps its faces in packs alone. */
+            meet_face(s, l->n, l->mesh, l->object, l->mesh->packs[leaf].face[i]);
             continue;
         }
-        const fl_entry *entry = &s->geometry->entries[items[i]];
+        const fl_entry *entry = &s->geometry->entries[bvh->items[(size_t)leaf * FL_BVH_WIDTH + i]];
         if (entry->is_instance)
             meet_instance(s, &s->geometry->instances[entry->index], l->ray);
         else
