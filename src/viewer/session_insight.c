@@ -139,6 +139,10 @@ static void prepare_stress(vw_session *session, vw_lab_question *question, fl_pa
     question->samples = STRESS_SAMPLES;
     add_frame(session, question, "", params, diags);
     switch (state->stress) {
+    case VW_STRESS_DOUBLE:
+        params->precision =
+            params->precision == FL_PRECISION_DOUBLE ? FL_PRECISION_FLOAT : FL_PRECISION_DOUBLE;
+        break;
     case VW_STRESS_SMALL:
         question->scale = SCALE_SMALL;
         break;

@@ -8,8 +8,8 @@
 const char *const vw_layer_names[VW_LAYER_COUNT] = {
     "beauty", "depth", "normal", "albedo", "samples", "error", "cost", "blur", "objects", "branch"};
 const char *const vw_stress_names[VW_STRESS_COUNT] = {
-    "off",           "scene \303\2271e-3", "scene \303\2271e6", "aperture 0",
-    "aperture huge", "focus 1e-6",         "focus 1e9"};
+    "off",        "double",        "scene \303\2271e-3", "scene \303\2271e6",
+    "aperture 0", "aperture huge", "focus 1e-6",         "focus 1e9"};
 
 static uint32_t largest_light_samples(const fl_params *params)
 {

@@ -68,6 +68,7 @@ typedef enum vw_panel {
  * same. */
 typedef enum vw_stress {
     VW_STRESS_OFF,
+    VW_STRESS_DOUBLE,  /**< Traced in double. */
     VW_STRESS_SMALL,   /**< The whole scene a thousandth of its size. */
     VW_STRESS_LARGE,   /**< A million times its size. */
     VW_STRESS_PINHOLE, /**< Aperture 0. */

@@ -296,8 +296,9 @@ static void add_strips(buffer *b)
         {"noise", "Where the noise comes from (N), and what the scene needs and that costs (M)."},
         {"trade", "Error against time (T): the way so far, the forecast, and one step of each knob "
                   "as measured; l2 is two light samples."},
-        {"stress", "The stress lens (J): the scene a thousandth of its size, a million times, and "
-                   "through a pinhole. Violet changed in last bits only, orange visibly."},
+        {"stress",
+         "The stress lens (J): against double, the scene a thousandth of its size, a million "
+         "times, and through a pinhole. Violet changed in last bits only, orange visibly."},
     };
     add(b, "\n## In pictures\n\nEach strip is made by a log of input, which `firstlight replay` "
            "plays (tools/make-strips).\n");
