@@ -195,7 +195,7 @@ static bool measure_lights(const bench_setup *setup, bench_growth_row *out)
                                .direction = {-1.4, -1.1, -3.1},
                                .up = {0, 1, 0},
                                .fov_deg = 40,
-                               .focus = INFINITY};
+                               .focus = (double)INFINITY};
     scene.has_camera = true;
     fl_params params;
     fl_params_from_scene(&params, &scene, false);

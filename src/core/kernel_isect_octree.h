@@ -42,7 +42,7 @@ FL_INLINE uint32_t beam_meet_octants(const packet *p, const fl_octree_node *node
     for (int at = 0; at < 8; at += FL_W) {
         fl_wf in = fl_wf_set(0.0f), out = fl_wf_set(INFINITY);
         for (int a = 0; a < 3; a++) {
-            fl_wm upper = ((fl_wi_iota() + at) & 1 << a) != 0;
+            fl_wm upper = ((fl_wi_iota() + at) & fl_wi_set(1 << a)) != 0;
             in = fl_wf_max(fl_wf_select(upper, fl_wf_set(near[a][1]), fl_wf_set(near[a][0])), in);
             out = fl_wf_min(fl_wf_select(upper, fl_wf_set(far[a][1]), fl_wf_set(far[a][0])), out);
         }

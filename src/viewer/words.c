@@ -334,8 +334,8 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "rays that one sample costs",
         "circle of confusion: white is sharp to a pixel, orange too near, blue too far",
         "a colour for each object",
-        "which kind of ray adds most: the surface's own yellow, a mirror's blue, glass's green, "
-        "deeper is darker"};
+        ("which kind of ray adds most: the surface's own yellow, a mirror's blue, glass's green, "
+         "deeper is darker")};
     for (int layer = 0; layer < VW_LAYER_COUNT; layer++)
         add(&b, "| `%s%d` | %s: %s |\n", layer == VW_LAYER_BRANCH ? "Shift+F" : "F",
             layer == VW_LAYER_BRANCH ? 8 : layer + 2, vw_layer_names[layer], layers[layer]);

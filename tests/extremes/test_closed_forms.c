@@ -74,7 +74,8 @@ static double rounded(double x)
 /* The nearer root, and by how much of r^2 the ray misses the silhouette. */
 static long double sphere_root(fl_vec3 o, fl_vec3 d, long double r, long double *out_margin)
 {
-    long double ox = o.x, oy = o.y, oz = o.z, dx = d.x, dy = d.y, dz = d.z;
+    long double ox = (long double)o.x, oy = (long double)o.y, oz = (long double)o.z;
+    long double dx = (long double)d.x, dy = (long double)d.y, dz = (long double)d.z;
     long double a = dx * dx + dy * dy + dz * dz, b = -(ox * dx + oy * dy + oz * dz);
     long double lx = ox + b / a * dx, ly = oy + b / a * dy, lz = oz + b / a * dz;
     long double rest = r * r - (lx * lx + ly * ly + lz * lz);
