@@ -36,17 +36,17 @@ typedef struct picture {
     uint64_t invalid;
 } picture;
 
-static value value_of(const char *text)
+/* The fields point into *out, which must not move. */
+static void value_read(const char *text, value *out)
 {
-    value v = {.is_slow = text[0] == '!'};
-    snprintf(v.text, sizeof v.text, "%s", text + (v.is_slow ? 1 : 0));
-    for (char *at = v.text; at && v.count < FIELDS_MAX;) {
-        v.fields[v.count++] = at;
+    *out = (value){.is_slow = text[0] == '!'};
+    snprintf(out->text, sizeof out->text, "%s", text + (out->is_slow ? 1 : 0));
+    for (char *at = out->text; at && out->count < FIELDS_MAX;) {
+        out->fields[out->count++] = at;
         at = strchr(at, '|');
         if (at)
             *at++ = 0;
     }
-    return v;
 }
 
 static double number(const char *text)
@@ -292,7 +292,8 @@ int study_extremes(const cli_options *options)
     for (uint32_t i = 0; i < extreme_family_count; i++) {
         const extreme_family *f = &extreme_families[i];
         for (const char *const *text = f->values; *text && !cli_was_interrupted(); text++) {
-            value v = value_of(*text);
+            value v;
+            value_read(*text, &v);
             if (v.is_slow && !is_thorough)
                 continue;
             char name[96];

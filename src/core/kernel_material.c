@@ -74,13 +74,15 @@ static void locate(const fl_texture *texture, const float *u, const float *v, ui
                                bytes * ((size_t)out->row[k][i] * image->width + out->column[0][i]));
 }
 
-/* Red green blue of one texel of each lane; bytes that are linear still times 255. */
+/* Red green blue of one texel of each of the first `lanes` lanes; the others, whose spots are those
+ * of another, perhaps larger picture, get the first one's. */
 FL_INLINE void gather_texels(const fl_image *image, const uint32_t *column, const uint32_t *row,
-                             fl_wd out[3])
+                             uint32_t lanes, fl_wd out[3])
 {
     float c[3][FL_WD];
-    for (int l = 0; l < FL_WD; l++) {
-        size_t at = 3 * ((size_t)row[l] * image->width + column[l]);
+    for (uint32_t l = 0; l < FL_WD; l++) {
+        uint32_t from = l < lanes ? l : 0;
+        size_t at = 3 * ((size_t)row[from] * image->width + column[from]);
         for (int k = 0; k < 3; k++) {
             if (image->format == FL_PIXEL_FLOAT)
                 c[k][l] = ((const float *)image->pixels)[at + (size_t)k];
@@ -105,11 +107,11 @@ static void read_texels(const fl_texture *texture, const spots *s, uint32_t begi
     const fl_wl all = (fl_wl)(fl_wd_set(0.0) == 0.0);
     for (uint32_t i = begin; i < end; i += FL_WD) {
         fl_wd a[3], b[3], c[3], d[3];
-        gather_texels(image, s->column[0] + i, s->row[0] + i, a);
+        gather_texels(image, s->column[0] + i, s->row[0] + i, end - i, a);
         if (texture->filter != FL_FILTER_NEAREST) {
-            gather_texels(image, s->column[1] + i, s->row[0] + i, b);
-            gather_texels(image, s->column[0] + i, s->row[1] + i, c);
-            gather_texels(image, s->column[1] + i, s->row[1] + i, d);
+            gather_texels(image, s->column[1] + i, s->row[0] + i, end - i, b);
+            gather_texels(image, s->column[0] + i, s->row[1] + i, end - i, c);
+            gather_texels(image, s->column[1] + i, s->row[1] + i, end - i, d);
             fl_wd across = fl_wd_load(s->across + i), down = fl_wd_load(s->down + i);
             for (int k = 0; k < 3; k++) {
                 fl_wd top = a[k] + across * (b[k] - a[k]);

@@ -16,6 +16,7 @@ static fl_compiled *compiled;
 static fl_params params;
 static uint8_t *good;
 static size_t good_bytes;
+static fl_scene *scene; /* Its parameters borrow its lights. */
 
 static void prepare(void)
 {
@@ -26,8 +27,7 @@ static void prepare(void)
         "Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }\n";
     fl_diags diags = {0};
     void *data = NULL;
-    fl_scene *scene =
-        fl_scene_parse(text, sizeof text - 1, "base", &(fl_parse_options){0}, NULL, &diags);
+    scene = fl_scene_parse(text, sizeof text - 1, "base", &(fl_parse_options){0}, NULL, &diags);
     MUST(scene);
     compiled = fl_compile(scene, &(fl_compile_options){0}, NULL, &diags);
     MUST(compiled);
@@ -40,7 +40,6 @@ static void prepare(void)
     MUST(fl_render_checkpoint(render, &data, &good_bytes, &diags) && data);
     good = data;
     fl_render_destroy(render);
-    /* The scene lives as long as its parameters borrow its lights: as long as the program. */
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)

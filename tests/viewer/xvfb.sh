@@ -93,7 +93,10 @@ xdotool sleep 3 # the message goes
 before=$(ticks)
 xdotool sleep 2
 used=$(($(ticks) - before))
-[ "$used" -le 2 ] || fail "at rest it used $used ticks of 200"
+# Instrumented code is several times slower.
+most=2
+! ldd "$program" | grep -qE 'lib(a|t|ub)san' || most=10
+[ "$used" -le "$most" ] || fail "at rest it used $used ticks of 200"
 
 # How often threads other than the first have slept and woken.
 wakes() { cat /proc/"$viewer"/task/*/status | awk -v first="$viewer" '/^Pid:/ {id = $2}
@@ -103,7 +106,7 @@ rests() { # WHEN: neither CPU nor a single wake-up of a worker in two seconds
     ticks_before=$(ticks) wakes_before=$(wakes)
     xdotool sleep 2
     [ "$(wakes)" = "$wakes_before" ] || fail "$1 its threads woke $(($(wakes) - wakes_before)) times"
-    [ "$(($(ticks) - ticks_before))" -le 2 ] || fail "$1 it used $(($(ticks) - ticks_before)) ticks of 200"
+    [ "$(($(ticks) - ticks_before))" -le "$most" ] || fail "$1 it used $(($(ticks) - ticks_before)) ticks of 200"
 }
 rests 'at rest'
 
