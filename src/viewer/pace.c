@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "viewer/pace.h"
 
-enum { FEW_RANKS = 8, FEW_SAMPLES = 4, RETRY_MS = 4 };
+enum { FEW_RANKS = 8, FEW_SAMPLES = 4, RETRY_MS = 1 };
 
 void vw_pace_restart(vw_pace *pace, uint64_t newest, uint64_t now_ms)
 {

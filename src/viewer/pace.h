@@ -14,7 +14,7 @@
 #include "core/firstlight.h"
 
 enum {
-    VW_PACE_FIRST_MS = 10, /**< Leaves a frame of 16 ms time for tone map, upload and drawing. */
+    VW_PACE_FIRST_MS = 7, /**< Leaves a frame of 16 ms time for tone map, upload and drawing. */
     VW_PACE_HOLD_MS = 100  /**< No restart waits longer. */
 };
 
