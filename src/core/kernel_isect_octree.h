@@ -57,25 +57,13 @@ static inline uint64_t groups_meet_octant(const packet *p, uint64_t lanes, const
                                           uint32_t octant, uint32_t mirror)
 {
     const fl_octree_node *node = &tree->nodes[octant / 8];
-    uint64_t met = 0;
     fl_wf enter[3], leave[3];
     for (int a = 0; a < 3; a++) {
         uint32_t h = (octant ^ mirror) >> a & 1u, flip = mirror >> a & 1u ? 3 : 0;
         enter[a] = fl_wf_set(node->plane[a][h ^ flip]);
         leave[a] = fl_wf_set(node->plane[a][(h + 2) ^ flip]);
     }
-    for (uint64_t left = lanes; left;) {
-        uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
-        left &= ~((uint64_t)FL_W_ALL << i);
-        fl_wf near = fl_wf_set(0.0f), far = fl_wf_load(p->t + i);
-        for (int a = 0; a < 3; a++) {
-            fl_wf inverse = fl_wf_load(&p->inverse[a][i]);
-            near = fl_wf_max((enter[a] - fl_wf_load(&p->enter_o[a][i])) * inverse, near);
-            far = fl_wf_min((leave[a] - fl_wf_load(&p->leave_o[a][i])) * inverse, far);
-        }
-        met |= (uint64_t)fl_wm_bits(near <= far) << i;
-    }
-    return met & lanes;
+    return groups_meet_planes(p, lanes, enter, leave);
 }
 
 FL_INLINE void packet_meet_cell(packet *p, uint64_t lanes, const mesh_target *target,

@@ -140,4 +140,24 @@ static inline void packet_find_beam(packet *p)
     }
 }
 
+/** Of the rays `lanes`, which go the same way along each axis, those that may meet a box with these
+ * planes, FL_W at a time: the one slab test of boxes and cells. */
+FL_INLINE uint64_t groups_meet_planes(const packet *p, uint64_t lanes, const fl_wf enter[3],
+                                      const fl_wf leave[3])
+{
+    uint64_t met = 0;
+    for (uint64_t left = lanes; left;) {
+        uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
+        left &= ~((uint64_t)FL_W_ALL << i);
+        fl_wf near = fl_wf_set(0.0f), far = fl_wf_load(p->t + i);
+        for (int a = 0; a < 3; a++) {
+            fl_wf inverse = fl_wf_load(&p->inverse[a][i]);
+            near = fl_wf_max((enter[a] - fl_wf_load(&p->enter_o[a][i])) * inverse, near);
+            far = fl_wf_min((leave[a] - fl_wf_load(&p->leave_o[a][i])) * inverse, far);
+        }
+        met |= (uint64_t)fl_wm_bits(near <= far) << i;
+    }
+    return met & lanes;
+}
+
 #endif

@@ -58,25 +58,13 @@ static inline uint64_t groups_meet_box(const packet *p, uint64_t lanes, const fl
 {
     const fl_bvh_node *node = &bvh->nodes[box / 8];
     uint32_t k = box % 8, any = (uint32_t)__builtin_ctzll(p->lanes);
-    uint64_t met = 0;
     fl_wf enter[3], leave[3];
     for (int a = 0; a < 3; a++) {
         int down = (int)(p->down[a] >> any & 1u);
         enter[a] = fl_wf_set(node->plane[2 * a + down][k]);
         leave[a] = fl_wf_set(node->plane[2 * a + 1 - down][k]);
     }
-    for (uint64_t left = lanes; left;) {
-        uint32_t i = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
-        left &= ~((uint64_t)FL_W_ALL << i);
-        fl_wf near = fl_wf_set(0.0f), far = fl_wf_load(p->t + i);
-        for (int a = 0; a < 3; a++) {
-            fl_wf inverse = fl_wf_load(&p->inverse[a][i]);
-            near = fl_wf_max((enter[a] - fl_wf_load(&p->enter_o[a][i])) * inverse, near);
-            far = fl_wf_min((leave[a] - fl_wf_load(&p->leave_o[a][i])) * inverse, far);
-        }
-        met |= (uint64_t)fl_wm_bits(near <= far) << i;
-    }
-    return met & lanes;
+    return groups_meet_planes(p, lanes, enter, leave);
 }
 
 /* Rays to which something at `near` could matter. */
