@@ -138,18 +138,16 @@ fl_mesh *bench_mesh_create(const bench_mesh *mesh, fl_diags *diags)
 }
 
 /* The scene has what compile needs, and nothing else. */
-fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
-                                fl_pool *pool, fl_diags *diags)
+fl_compiled *bench_mesh_compile_copy(fl_mesh *copy, const char *name,
+                                     const fl_compile_options *options, fl_pool *pool,
+                                     fl_diags *diags)
 {
-    fl_mesh *copy = bench_mesh_create(mesh, diags);
-    if (!copy)
-        return NULL;
     fl_object object = {.kind = FL_OBJECT_MESH,
                         .transform = FL_NONE,
                         .as.mesh = {.mesh = 0, .normals = FL_NORMALS_FLAT}};
     fl_material material = {.diffuse = {1, 1, 1}, .refraction_index = 1, .image = FL_NONE};
-    fl_scene_mesh row = {.path = mesh->name, .mesh = copy};
-    fl_scene scene = {.path = mesh->name,
+    fl_scene_mesh row = {.path = name, .mesh = copy};
+    fl_scene scene = {.path = name,
                       .objects = &object,
                       .object_count = 1,
                       .materials = &material,
@@ -158,7 +156,15 @@ fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options
                       .mesh_count = 1};
     for (int k = 0; k < FL_CUBE_FACES; k++)
         scene.background.cube_image[k] = FL_NONE;
-    fl_compiled *compiled = fl_compile(&scene, options, pool, diags);
+    return fl_compile(&scene, options, pool, diags);
+}
+
+fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
+                                fl_pool *pool, fl_diags *diags)
+{
+    fl_mesh *copy = bench_mesh_create(mesh, diags);
+    fl_compiled *compiled =
+        copy ? bench_mesh_compile_copy(copy, mesh->name, options, pool, diags) : NULL;
     fl_mesh_release(copy);
     return compiled;
 }

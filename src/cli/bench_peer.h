@@ -15,11 +15,12 @@ typedef struct bench_peer {
     const char *const *modes;
     uint32_t mode_count;
     /** Build over triangles, which must outlive it: 3 floats a position (and one float of slack
-     * behind the last), 3 indices a face. Adds build time in CPU seconds of this process.
-     * is_robust: no ray slips through an edge. config: settings of its own, possibly "". NULL:
-     * failed. */
+     * behind the last), 3 indices a face. *out_seconds: of building, CPU time of this process by
+     * one thread, wall time by more. is_robust: no ray slips through an edge. config: settings of
+     * its own, possibly "". NULL: failed. */
     void *(*build)(const float *position, uint32_t position_count, const uint32_t *index,
-                   uint32_t face_count, bool is_robust, const char *config, double *out_seconds);
+                   uint32_t face_count, bool is_robust, uint32_t thread_count, const char *config,
+                   double *out_seconds);
     void (*destroy)(void *scene);
     /** Lay rays out as mode `mode` likes them. NULL: out of memory. */
     void *(*load)(const fl_rays *rays, uint32_t mode, bool is_any);

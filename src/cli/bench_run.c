@@ -225,81 +225,124 @@ static bool run_kinds(const bench_setup *setup, const bench_mesh *mesh, const fl
 
 /* --- Building -------------------------------------------------------------------------------- */
 
-/* Both build again and again, in turn; the last of each stay. */
-static bool run_build(const bench_setup *setup, const bench_mesh *mesh, fl_compiled **out_scene,
-                      opponent *o)
+/* Builds of one and of all threads, in turn: ours, theirs. */
+enum { BUILD_WAYS = 4, ONE = 0, ALL = 1, THEIR_ONE = 2, THEIR_ALL = 3 };
+
+typedef struct builds {
+    fl_mesh *copy;
+    fl_pool *pool;
+    uint32_t threads, rounds;
+    double seconds[BUILD_WAYS][BENCH_ROUNDS_MAX]; /* CPU time by one thread, wall time by all. */
+    double wall[BENCH_ROUNDS_MAX];                /* Of ours by one thread. */
+} builds;
+
+/* Ours in round r; the scene stays in *out_scene. */
+static bool build_ours(const bench_setup *setup, const bench_mesh *mesh, builds *b, uint32_t r,
+                       fl_compiled **out_scene)
 {
-    double ours[BENCH_ROUNDS_MAX], theirs[BENCH_ROUNDS_MAX], ratio[BENCH_ROUNDS_MAX];
-    uint32_t rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
-    for (uint32_t r = 0; r < rounds; r++) {
+    for (int way = ALL; way >= ONE; way--) {
         fl_compiled_release(*out_scene);
         double begin = bench_thread_seconds();
-        *out_scene = bench_mesh_compile(mesh, &setup->compile, NULL, setup->diags);
+        *out_scene = bench_mesh_compile_copy(b->copy, mesh->name, &setup->compile,
+                                             way == ALL ? b->pool : NULL, setup->diags);
         if (!*out_scene)
             return false;
-        ours[r] = bench_thread_seconds() - begin;
-        if (!o->peer)
-            continue;
-        o->peer->destroy(o->scene[0]);
-        o->scene[0] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
-                                     mesh->face_count, false, setup->peer_config, &theirs[r]);
-        if (!o->scene[0])
-            return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
-        ratio[r] = theirs[r] / ours[r];
+        b->seconds[way][r] =
+            way == ALL ? (*out_scene)->build_seconds : bench_thread_seconds() - begin;
+        b->wall[r] = (*out_scene)->build_seconds;
     }
-    double n = mesh->face_count;
-    row line = {
-        .mesh = mesh, .kind = "build", .mrays = n / bench_figure_of(ours, rounds).median * 1e-6};
-    if (o->peer) {
-        double seconds;
-        line.peer = o->peer->name;
-        line.peer_mode = "medium";
-        line.peer_mrays = n / bench_figure_of(theirs, rounds).median * 1e-6;
-        line.ratio = bench_figure_of(ratio, rounds);
-        o->scene[1] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
-                                     mesh->face_count, true, setup->peer_config, &seconds);
-        if (!o->scene[1])
-            return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
-    }
-    add_row(setup, &line);
     return true;
 }
 
-/* Wall time of compiling by one thread and by all, in turn. */
-static bool run_build_threads(const bench_setup *setup, const bench_mesh *mesh)
+static bool build_theirs(const bench_setup *setup, const bench_mesh *mesh, builds *b, uint32_t r,
+                         opponent *o)
 {
-    uint32_t rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
-    double ms[2][BENCH_ROUNDS_MAX], gain[BENCH_ROUNDS_MAX];
-    fl_pool *pool = fl_pool_create(setup->thread_count, setup->diags);
-    bool ok = pool != NULL;
-    for (uint32_t r = 0; ok && r < rounds; r++) {
-        for (int k = 0; ok && k < 2; k++) {
-            fl_compiled *scene =
-                bench_mesh_compile(mesh, &setup->compile, k ? pool : NULL, setup->diags);
-            ok = scene != NULL;
-            ms[k][r] = ok ? scene->build_seconds * 1e3 : 0.0;
-            fl_compiled_release(scene);
-        }
-        gain[r] = ms[0][r] / ms[1][r];
+    for (int way = THEIR_ALL; way >= THEIR_ONE; way--) {
+        o->peer->destroy(o->scene[0]);
+        o->scene[0] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
+                                     mesh->face_count, false, way == THEIR_ALL ? b->threads : 1,
+                                     setup->peer_config, &b->seconds[way][r]);
+        if (!o->scene[0])
+            return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
     }
-    fl_pool_destroy(pool);
-    if (!ok)
-        return false;
-    bench_figure one = bench_figure_of(ms[0], rounds), all = bench_figure_of(ms[1], rounds),
-                 times = bench_figure_of(gain, rounds);
-    uint32_t threads = fl_thread_count(setup->thread_count);
-    if (setup->rows)
-        json_array_append_new(
-            setup->rows,
+    return true;
+}
+
+/* Sorts neither. */
+static bench_figure ratio_of(const double *theirs, const double *ours, uint32_t rounds)
+{
+    double ratio[BENCH_ROUNDS_MAX];
+    for (uint32_t r = 0; r < rounds; r++)
+        ratio[r] = theirs[r] / ours[r];
+    return bench_figure_of(ratio, rounds);
+}
+
+static void report_all_threads(const bench_setup *setup, const bench_mesh *mesh, builds *b,
+                               const opponent *o)
+{
+    bench_figure times = ratio_of(b->wall, b->seconds[ALL], b->rounds), ratio = {0};
+    double theirs = 0.0;
+    if (o->peer) {
+        ratio = ratio_of(b->seconds[THEIR_ALL], b->seconds[ALL], b->rounds);
+        theirs = bench_figure_of(b->seconds[THEIR_ALL], b->rounds).median;
+    }
+    double one = bench_figure_of(b->wall, b->rounds).median,
+           all = bench_figure_of(b->seconds[ALL], b->rounds).median;
+    if (setup->rows) {
+        json_t *line =
             json_pack("{s:s, s:I, s:s, s:I, s:f, s:f, s:f, s:f, s:f}", "mesh", mesh->name,
                       "triangles", (json_int_t)mesh->face_count, "kind", "build-wall", "threads",
-                      (json_int_t)threads, "ms_1_thread", one.median, "ms", all.median, "speedup",
-                      times.median, "speedup_min", times.min, "speedup_max", times.max));
-    else
-        printf("%-12s %8u  %-12s %8.2f ms by 1 thread, %8.2f ms by %u: %.2f (%.2f to %.2f)\n",
-               mesh->name, mesh->face_count, "build-wall", one.median, all.median, threads,
-               times.median, times.min, times.max);
+                      (json_int_t)b->threads, "ms_1_thread", one * 1e3, "ms", all * 1e3, "speedup",
+                      times.median, "speedup_min", times.min, "speedup_max", times.max);
+        if (o->peer)
+            json_object_update_new(line,
+                                   json_pack("{s:s, s:f, s:f, s:f, s:f}", "peer", o->peer->name,
+                                             "peer_ms", theirs * 1e3, "ratio", ratio.median,
+                                             "ratio_min", ratio.min, "ratio_max", ratio.max));
+        json_array_append_new(setup->rows, line);
+        return;
+    }
+    printf("%-12s %8u  %-12s %8.2f ms by 1 thread, %8.2f ms by %u: %.2f (%.2f to %.2f)", mesh->name,
+           mesh->face_count, "build-wall", one * 1e3, all * 1e3, b->threads, times.median,
+           times.min, times.max);
+    if (o->peer)
+        printf("  %s by %u %8.2f ms  ratio %.2f (%.2f to %.2f)", o->peer->name, b->threads,
+               theirs * 1e3, ratio.median, ratio.min, ratio.max);
+    putchar('\n');
     fflush(stdout);
+}
+
+static void report_one_thread(const bench_setup *setup, const bench_mesh *mesh, builds *b,
+                              const opponent *o)
+{
+    double n = mesh->face_count;
+    row line = {.mesh = mesh, .kind = "build"};
+    if (o->peer) {
+        line.peer = o->peer->name;
+        line.peer_mode = "medium";
+        line.ratio = ratio_of(b->seconds[THEIR_ONE], b->seconds[ONE], b->rounds);
+        line.peer_mrays = n / bench_figure_of(b->seconds[THEIR_ONE], b->rounds).median * 1e-6;
+    }
+    line.mrays = n / bench_figure_of(b->seconds[ONE], b->rounds).median * 1e-6;
+    add_row(setup, &line);
+}
+
+/* The last scene of each by one thread stays, theirs built in both of its ways. */
+static bool run_build(const bench_setup *setup, const bench_mesh *mesh, builds *b,
+                      fl_compiled **out_scene, opponent *o)
+{
+    double seconds;
+    for (uint32_t r = 0; r < b->rounds; r++)
+        if (!build_ours(setup, mesh, b, r, out_scene) ||
+            (o->peer && !build_theirs(setup, mesh, b, r, o)))
+            return false;
+    if (o->peer)
+        o->scene[1] = o->peer->build(mesh->position, mesh->position_count, mesh->index,
+                                     mesh->face_count, true, 1, setup->peer_config, &seconds);
+    if (o->peer && !o->scene[1])
+        return fl_environment_error(setup->diags, "%s could not build", o->peer->name);
+    report_all_threads(setup, mesh, b, o); /* Before the other, which sorts. */
+    report_one_thread(setup, mesh, b, o);
     return true;
 }
 
@@ -307,8 +350,18 @@ bool bench_mesh_run(const bench_setup *setup, const bench_mesh *mesh)
 {
     opponent o = {.peer = setup->peer};
     fl_compiled *scene = NULL;
-    bool ok = run_build(setup, mesh, &scene, &o) && run_build_threads(setup, mesh) &&
-              run_kinds(setup, mesh, scene, &o);
+    builds *b = calloc(1, sizeof *b);
+    if (!b)
+        return fl_out_of_memory(setup->diags, "times");
+    b->copy = bench_mesh_create(mesh, setup->diags);
+    b->pool = b->copy ? fl_pool_create(setup->thread_count, setup->diags) : NULL;
+    b->threads = fl_thread_count(setup->thread_count);
+    b->rounds = mesh->face_count > 2000000 ? 1 : setup->rounds;
+    bool ok = b->pool && run_build(setup, mesh, b, &scene, &o);
+    fl_pool_destroy(b->pool);
+    fl_mesh_release(b->copy);
+    free(b);
+    ok = ok && run_kinds(setup, mesh, scene, &o);
     for (int k = 0; o.peer && k < 2; k++)
         o.peer->destroy(o.scene[k]);
     fl_compiled_release(scene);

@@ -41,6 +41,11 @@ void bench_show_progress(uint32_t done, uint32_t all, double begin);
 /** Rays of all kinds and the build, on one mesh, one thread. False after adding an error. */
 bool bench_mesh_run(const bench_setup *setup, const bench_mesh *mesh);
 
+/** A picture of the mesh with and without a quick first build, all threads: times from compiling on
+ * to the first picture, the first sample and BENCH_SAMPLES; the first sample's cost by stage. False
+ * after adding an error, as that the films differ. */
+bool bench_first_run(const bench_setup *setup, const bench_mesh *mesh);
+
 enum { BENCH_SAMPLES = 16 };
 
 /** Render a whole picture of BENCH_SAMPLES samples. False after adding an error. */

@@ -42,6 +42,11 @@ fl_mesh *bench_mesh_create(const bench_mesh *mesh, fl_diags *diags);
 fl_compiled *bench_mesh_compile(const bench_mesh *mesh, const fl_compile_options *options,
                                 fl_pool *pool, fl_diags *diags);
 
+/** The same of what bench_mesh_create gave. */
+fl_compiled *bench_mesh_compile_copy(fl_mesh *copy, const char *name,
+                                     const fl_compile_options *options, fl_pool *pool,
+                                     fl_diags *diags);
+
 /** Rays of one kind with room for their hits, all in one piece of memory. */
 typedef struct bench_rays {
     bench_kind kind;

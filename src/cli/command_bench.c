@@ -31,7 +31,8 @@ static bool run_path(const cli_options *options, const bench_setup *setup, const
         bool ok = is_sphere ? bench_mesh_sphere(fl_min_u32(fl_max_u32(faces, 12), 100 * MILLION),
                                                 &mesh, setup->diags)
                             : bench_mesh_load(path, &mesh, setup->diags);
-        ok = ok && bench_mesh_run(setup, &mesh);
+        ok = ok && (cli_has(options, CLI_OPT_FIRST_PICTURE) ? bench_first_run(setup, &mesh)
+                                                            : bench_mesh_run(setup, &mesh));
         bench_mesh_deinit(&mesh);
         return ok;
     }

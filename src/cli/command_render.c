@@ -31,7 +31,7 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, doubl
     for (uint32_t i = 0; i < FL_COST_COUNT; i++)
         json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
-        "{s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:s, s:b, s:s}", "scene",
+        "{s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:s, s:b, s:s, s:f}", "scene",
         scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)cli_picture_samples(picture),
         "light_samples", (int)scene->params.light_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
@@ -40,9 +40,12 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, doubl
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
         (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "precision",
         scene->params.precision == FL_PRECISION_DOUBLE ? "double" : "float", "interrupted",
-        (int)picture->was_interrupted, "film_sha256", picture->film_sha256);
+        (int)picture->was_interrupted, "film_sha256", picture->film_sha256,
+        "load_seconds", scene->load_seconds);
     if (line)
         json_object_set_new(line, "forecast", forecast_json(p, target));
+    if (line && picture->refined_seconds > 0.0)
+        json_object_set_new(line, "refined_seconds", json_real(picture->refined_seconds));
     if (line && p->is_adaptive)
         json_object_update_new(line, json_pack("{s:b, s:f}", "adaptive", 1, "mean_samples", p->mean_samples));
     if (line && noise)
@@ -93,7 +96,7 @@ int cli_command_render(const cli_options *options)
         return cli_usage_error(CLI_RENDER, "nowhere to write: give -o IMAGE or --json");
     cli_catch_signals();
     fl_diags diags = {0};
-    cli_scene scene = {.diags = &diags};
+    cli_scene scene = {.diags = &diags, .quick_above = options->quick_above};
     cli_picture picture = {0};
     cli_aovs aovs;
     if (outputs_are_writable(options, &diags) && cli_aov_parse(options->aov, &aovs, &diags) &&

@@ -22,7 +22,8 @@ static const char *default_scene(void)
 static bool load(void *context, const char *path, vw_scene *out, fl_diags *diags)
 {
     const cli_options *options = context;
-    cli_scene scene = {.diags = diags};
+    uint32_t quick_above = cli_has(options, CLI_OPT_QUICK_ABOVE) ? options->quick_above : FL_QUICK_ABOVE;
+    cli_scene scene = {.diags = diags, .quick_above = quick_above};
     bool ok = cli_scene_open(options, path, &scene);
     if (ok) {
         *out = (vw_scene){.scene = scene.scene,

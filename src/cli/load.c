@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <time.h>
 
 #include "cli/noise.h"
 #include "io/files.h"
@@ -132,8 +133,16 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->precision = (fl_precision)o->precision;
 }
 
+static double seconds_now(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)
 {
+    double begin = seconds_now();
     if (!cli_scene_parse(options, path, out))
         return false;
     fl_pool *pool = fl_pool_create(options->threads, out->diags);
@@ -144,7 +153,8 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     fl_compile_options compile = {.accel = (fl_accel)options->accel,
                                   .has_isa = names_isa,
                                   .isa = isa,
-                                  .octree_height = options->octree_height};
+                                  .octree_height = options->octree_height,
+                                  .quick_above = out->quick_above};
     out->compiled = fl_compile(out->scene, &compile, pool, out->diags);
     fl_pool_destroy(pool);
     if (!out->compiled)
@@ -157,7 +167,10 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     if (!fl_params_check(&out->params, out->diags))
         return false;
     bool is_auto = cli_has(options, CLI_OPT_LIGHT_SAMPLES) && options->light_samples == CLI_AUTO;
-    return !is_auto || cli_noise_choose_light_samples(out->compiled, &out->params, out->diags);
+    if (is_auto && !cli_noise_choose_light_samples(out->compiled, &out->params, out->diags))
+        return false;
+    out->load_seconds = seconds_now() - begin;
+    return true;
 }
 
 void cli_scene_close(cli_scene *scene)

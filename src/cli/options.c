@@ -67,6 +67,10 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                        "how triangles are found (default bvh); all give the same picture"},
     [CLI_OPT_OCTREE_HEIGHT] = {"octree-height", 0, "N", CLI_KIND_COUNT, AT(octree_height), 1, 8, NULL, LOADING,
                                "levels of the octree (default 8)"},
+    [CLI_OPT_QUICK_ABOVE] = {"quick-above", 0, "N", CLI_KIND_COUNT, AT(quick_above), 0, 4294967295.0, NULL,
+                             BIT(CLI_VIEW) | BIT(CLI_RENDER) | BIT(CLI_REPLAY),
+                             "meshes of more triangles are built quickly first and refined while the picture grows, which "
+                             "stays the same (default 1000000, render: 0, none)"},
     [CLI_OPT_ISA] = {"isa", 0, NULL, CLI_KIND_CHOICE_TEXT, AT(isa), 0, 0, isa_names, LOADING,
                      "instruction set (default auto); all give the same picture"},
     [CLI_OPT_THREADS] = {"threads", 'j', "N", CLI_KIND_COUNT, AT(threads), 1, 1024, NULL, LOADING,
@@ -109,6 +113,9 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                      "with --extremes: the slow rows too"},
     [CLI_OPT_AGAINST] = {"against", 0, "NAME", CLI_KIND_TEXT, AT(against), 0, 0, NULL, BIT(CLI_BENCH),
                          "trace the same rays with another tracer: embree, where its module was built"},
+    [CLI_OPT_FIRST_PICTURE] = {"first-picture", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_BENCH),
+                               "of meshes: time from compiling to the first picture, to 1 and 16 samples, with and without "
+                               "a quick first build"},
     [CLI_OPT_GROWTH] = {"growth", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_BENCH),
                         "cost of a ray for 1 to a million spheres, and more triangles, instances, lights"},
     [CLI_OPT_SOURCE] = {"source-comparison", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_BENCH),

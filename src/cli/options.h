@@ -44,6 +44,7 @@ typedef enum cli_option_id {
     CLI_OPT_PRECISION,
     CLI_OPT_ACCEL,
     CLI_OPT_OCTREE_HEIGHT,
+    CLI_OPT_QUICK_ABOVE,
     CLI_OPT_ISA,
     CLI_OPT_THREADS,
     CLI_OPT_LEAVE_CORE,
@@ -64,6 +65,7 @@ typedef enum cli_option_id {
     CLI_OPT_EXTREMES,
     CLI_OPT_ALL,
     CLI_OPT_AGAINST,
+    CLI_OPT_FIRST_PICTURE,
     CLI_OPT_GROWTH,
     CLI_OPT_SOURCE,
     CLI_OPT_RECORD,
@@ -94,7 +96,7 @@ typedef enum cli_command_id {
 typedef struct cli_options {
     uint64_t given; /**< Bit per cli_option_id. */
     uint32_t size[2], crop[4], pixel[3];
-    uint32_t samples, light_samples, depth, seed, threads, octree_height, repeats, revolve_starts;
+    uint32_t samples, light_samples, depth, seed, threads, octree_height, quick_above, repeats, revolve_starts;
     double time_s, budget_s, noise, scale, aperture, focus, exposure_ev, weight_threshold;
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
     uint32_t adaptive, sampler, solver, precision, accel, dialect; /**< Values of the core's enums. */

@@ -20,7 +20,7 @@ bool cli_forecast_read(const fl_progress *progress, double target_rmse, cli_fore
 }
 
 /* One line, rewritten in place, on a terminal only. */
-static void show_progress(const char *name, const fl_progress *progress, const fl_render_limits *limits)
+static void show_progress(const char *name, const fl_progress *progress, const fl_render_limits *limits, bool is_refining)
 {
     double share = 0.0;
     if (limits->samples)
@@ -39,7 +39,7 @@ static void show_progress(const char *name, const fl_progress *progress, const f
     if (is_forecast && forecast.seconds > progress->seconds)
         fprintf(stderr, "; %.3g %% after about %.3g s (%.3g to %.3g)", 100.0 * target, forecast.seconds, forecast.low,
                 forecast.high);
-    fputs("   ", stderr);
+    fputs(is_refining ? "; refining the hierarchy" : "\033[K", stderr);
     fflush(stderr);
 }
 
@@ -82,13 +82,35 @@ static bool begin(fl_render *render, cli_scene *scene, checkpoint *kept)
     return has_begun;
 }
 
+/* Called by the thread that refines. Without memory for it the render goes on as it is. */
+static void go_on_with(void *render, fl_compiled *refined)
+{
+    fl_diags diags = {0};
+    if (refined)
+        fl_render_replace_scene(render, refined, &diags);
+    fl_diags_deinit(&diags);
+}
+
+/* Let go of the quick hierarchies once there are better ones. */
+static void take_refined(fl_refine *refine, cli_scene *scene, cli_picture *out)
+{
+    fl_compiled *refined = refine ? fl_refine_take(refine) : NULL;
+    if (!refined)
+        return;
+    fl_compiled_release(scene->compiled);
+    scene->compiled = refined;
+    out->refined_seconds = out->progress.seconds;
+}
+
 /* False: out of memory, or after adding an error. */
 static bool render_until_done(fl_render *render, const fl_render_limits *limits, const char *progress_name,
-                              checkpoint *kept, cli_picture *out, fl_diags *diags)
+                              checkpoint *kept, fl_refine *refine, cli_scene *scene, cli_picture *out)
 {
+    fl_diags *diags = scene->diags;
     bool shows = progress_name && isatty(STDERR_FILENO), has_shown = false, is_kept = true;
     while (is_kept && !fl_render_wait(render, 0.1)) {
         fl_render_progress(render, &out->progress);
+        take_refined(refine, scene, out);
         if (out->progress.state == FL_RENDER_FAILED)
             break;
         if (cli_was_interrupted()) {
@@ -97,7 +119,7 @@ static bool render_until_done(fl_render *render, const fl_render_limits *limits,
             break;
         }
         if (shows && out->progress.seconds > 1.0) {
-            show_progress(progress_name, &out->progress, limits);
+            show_progress(progress_name, &out->progress, limits, fl_refine_is_busy(refine));
             has_shown = true;
         }
         if (kept->path && out->progress.seconds >= kept->next_s) {
@@ -153,8 +175,12 @@ bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, const 
         return false;
     fl_render_set_limits(render, limits);
     checkpoint kept = {.path = plan->checkpoint, .next_s = keep_every_s};
-    bool ok = begin(render, scene, &kept) &&
-              render_until_done(render, limits, plan->progress_name, &kept, out, scene->diags);
+    fl_refine *refine = NULL;
+    bool ok = begin(render, scene, &kept);
+    if (ok && scene->compiled->is_quick)
+        ok = (refine = fl_refine_start(scene->compiled, plan->threads, go_on_with, render, scene->diags)) != NULL;
+    ok = ok && render_until_done(render, limits, plan->progress_name, &kept, refine, scene, out);
+    fl_refine_destroy(refine);
     if (ok)
         ok = take_picture(render, out, scene->diags) && take_maps(render, plan->maps, out, scene->diags);
     fl_render_destroy(render);

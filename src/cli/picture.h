@@ -18,6 +18,7 @@ typedef struct cli_picture {
     char film_sha256[FL_SHA256_HEX + 1];
     fl_progress progress;
     bool was_interrupted;
+    double refined_seconds; /**< When the good hierarchies took over, in seconds of rendering; 0: from the start, or never. */
 } cli_picture;
 
 /** How a picture is rendered besides its limits; zero is the plain way. */

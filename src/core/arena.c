@@ -8,24 +8,30 @@ enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024 };
 
 struct fl_arena_block {
     fl_arena_block *older;
-    size_t capacity_bytes,
-        used_bytes; /* of the payload, which begins ALIGN bytes after the block */
+    size_t capacity_bytes, used_bytes; /* Of the payload: the first aligned byte behind, and on. */
+    bool is_zeroed;
 };
+
+_Static_assert(sizeof(fl_arena_block) <= ALIGN, "a block needs more than it asks for");
 
 static void *block_payload(fl_arena_block *block)
 {
-    return (char *)block + ALIGN;
+    uintptr_t behind = (uintptr_t)block + sizeof *block;
+    return (char *)block + sizeof *block + (ALIGN - behind % ALIGN) % ALIGN;
 }
 
-/* A block whose payload holds at least `bytes` (a multiple of ALIGN). */
+/* A block whose payload holds at least `bytes` (a multiple of ALIGN). A large one is zero as it
+ * comes from the system, page by page when it is first touched: by the threads that fill it. */
 static fl_arena_block *block_create(size_t bytes)
 {
-    size_t capacity = bytes < BLOCK_BYTES ? BLOCK_BYTES : bytes;
-    if (capacity > SIZE_MAX - ALIGN)
+    bool is_large = bytes > BLOCK_BYTES;
+    size_t capacity = is_large ? bytes : BLOCK_BYTES;
+    if (capacity > SIZE_MAX - 2 * ALIGN)
         return NULL;
-    fl_arena_block *block = aligned_alloc(ALIGN, capacity + ALIGN);
+    fl_arena_block *block =
+        is_large ? calloc(1, capacity + 2 * ALIGN) : malloc(capacity + 2 * ALIGN);
     if (block)
-        *block = (fl_arena_block){.capacity_bytes = capacity};
+        *block = (fl_arena_block){.capacity_bytes = capacity, .is_zeroed = is_large};
     return block;
 }
 
@@ -48,7 +54,7 @@ void *fl_arena_alloc(fl_arena *arena, size_t count, size_t item_bytes)
     void *memory = (char *)block_payload(block) + block->used_bytes;
     block->used_bytes += bytes;
     arena->used_bytes += bytes;
-    return memset(memory, 0, bytes);
+    return block->is_zeroed ? memory : memset(memory, 0, bytes);
 }
 
 char *fl_arena_text(fl_arena *arena, const char *text, size_t text_bytes)

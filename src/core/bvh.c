@@ -335,6 +335,8 @@ static bool split_top(builder *b, fl_pool *pool)
         b->round = round;
         b->next_count = 0;
         fl_parallel_for(pool, count, 1, split_round, b);
+        if (fl_pool_is_cancelled(pool))
+            return false;
         b->depth++;
         for (uint32_t i = 0; i < count; i++) {
             uint32_t left = add_top(b, &round[i].half[0]);
@@ -459,8 +461,11 @@ static bool put_together(builder *b, fl_arena *arena, fl_arena *item_arena, fl_p
     return true;
 }
 
-static bool has_failed(const builder *b)
+/* Out of memory, or loops were broken off. */
+static bool has_failed(const builder *b, const fl_pool *pool)
 {
+    if (fl_pool_is_cancelled(pool))
+        return true;
     for (uint32_t t = 0; t < b->thread_count; t++)
         if (b->workspaces[t].failed)
             return true;
@@ -472,13 +477,13 @@ static bool build(builder *b, fl_arena *arena, fl_arena *item_arena, fl_pool *po
     if (!b->items || !b->workspaces)
         return false;
     fl_parallel_for(pool, b->in->count, 65536, fill_items, b);
-    if (!split_top(b, pool))
+    if (has_failed(b, pool) || !split_top(b, pool))
         return false;
     fl_parallel_for(pool, b->piece_count, 1, split_pieces, b);
-    if (has_failed(b) || !make_top(b))
+    if (has_failed(b, pool) || !make_top(b))
         return false;
     fl_parallel_for(pool, b->branch_count, 1, make_branches, b);
-    return !has_failed(b) && put_together(b, arena, item_arena, pool);
+    return !has_failed(b, pool) && put_together(b, arena, item_arena, pool) && !has_failed(b, pool);
 }
 
 static void builder_deinit(builder *b)
@@ -511,7 +516,8 @@ bool fl_bvh_build(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena, f
                  .thread_count = threads,
                  .workspaces = calloc(threads, sizeof *b.workspaces),
                  .out = &result};
-    bool ok = build(&b, arena, item_arena, pool);
+    /* One piece is not worth waking others for. */
+    bool ok = build(&b, arena, item_arena, count > PIECE_ITEMS ? pool : NULL);
     builder_deinit(&b);
     if (ok)
         *out_bvh = result;

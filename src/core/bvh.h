@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Layer 3: bounding volume hierarchy with eight children a node, over any boxes: a binary tree by
- * the surface area heuristic [Wald 2007], folded into nodes of eight whose area in all is least.
+ * the surface area heuristic [Wald 2007], folded into nodes of eight whose area in all is least;
+ * or, quickly, what follows in the order of a curve through space.
  * The tree depends on the boxes alone, never on the thread count.
  */
 #ifndef FL_BVH_H
@@ -54,9 +55,13 @@ typedef struct fl_bvh_input {
     bool are_packed;  /**< A ray tests the items of a leaf all at once, rather than one by one. */
 } fl_bvh_input;
 
-/** Build; nodes come from `arena`, items from `item_arena`. False: out of memory, or more than
- * 2^28 boxes. O(n log n). */
+/** Build; nodes come from `arena`, items from `item_arena`. False: out of memory, more than 2^28
+ * boxes, or the pool was cancelled. O(n log n). */
 bool fl_bvh_build(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena, fl_arena *item_arena,
                   fl_pool *pool);
+
+/** The same, several times as fast; rays then take about half as long again. O(n). */
+bool fl_bvh_build_quick(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena,
+                        fl_arena *item_arena, fl_pool *pool);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/compile.h"
 
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
@@ -41,6 +42,63 @@ static bool allocate_objects(fl_compiler *c)
     return true;
 }
 
+/* --- Large meshes ----------------------------------------------------------------------------- */
+
+static bool has_large_meshes(const fl_compiled *scene)
+{
+    for (uint32_t k = 0; k < scene->geometry.mesh_count; k++)
+        if (scene->geometry.meshes[k].face_count > 0 && !scene->geometry.meshes[k].packs)
+            return true;
+    return false;
+}
+
+/* `base` with hierarchies for the meshes that have none; their table is the only one copied. */
+static fl_compiled *complete(fl_compiled *base, bool is_quick, fl_pool *pool, fl_diags *diags)
+{
+    static const fl_compile_options options = {.accel = FL_ACCEL_BVH};
+    double start = seconds_now();
+    fl_compiled *out = malloc(sizeof *out);
+    if (!out) {
+        fl_out_of_memory(diags, "the compiled scene");
+        return NULL;
+    }
+    /* All but the count of references, which others may be changing. */
+    const size_t rest = offsetof(fl_compiled, arena);
+    memcpy((char *)out + rest, (const char *)base + rest, sizeof *out - rest);
+    fl_ref_init(&out->ref);
+    out->arena = (fl_arena){0};
+    out->base = fl_compiled_retain(base);
+    out->is_quick = is_quick;
+    fl_geometry *g = &out->geometry;
+    size_t bytes = g->mesh_count * sizeof *g->meshes;
+    g->meshes = fl_arena_alloc(&out->arena, g->mesh_count, sizeof *g->meshes);
+    bool ok = g->meshes || fl_out_of_memory(diags, "the scene's meshes");
+    if (ok)
+        memcpy(g->meshes, base->geometry.meshes, bytes);
+    fl_compiler c = {.options = &options,
+                     .pool = pool,
+                     .diags = diags,
+                     .out = out,
+                     .geometry = g,
+                     .is_quick = is_quick};
+    for (uint32_t k = 0; ok && k < g->mesh_count; k++)
+        if (g->meshes[k].face_count > 0 && !g->meshes[k].packs)
+            ok = fl_compile_accel(&c, &g->meshes[k]);
+    out->build_seconds += seconds_now() - start;
+    if (ok && !fl_pool_is_cancelled(pool))
+        return out;
+    fl_compiled_release(out);
+    return NULL;
+}
+
+fl_compiled *fl_compile_refine(const fl_compiled *quick, fl_pool *pool, fl_diags *diags)
+{
+    FL_ASSERT(quick->is_quick);
+    return complete(quick->base, false, pool, diags);
+}
+
+/* --- All of it -------------------------------------------------------------------------------- */
+
 fl_compiled *fl_compile(const fl_scene *scene, const fl_compile_options *options, fl_pool *pool,
                         fl_diags *diags)
 {
@@ -66,7 +124,11 @@ fl_compiled *fl_compile(const fl_scene *scene, const fl_compile_options *options
     }
     out->build_seconds = seconds_now() - start;
     out->geometry_bytes = out->arena.used_bytes - out->accel_bytes;
-    return out;
+    if (!has_large_meshes(out))
+        return out;
+    fl_compiled *quick = complete(out, true, pool, diags);
+    fl_compiled_release(out);
+    return quick;
 }
 
 fl_compiled *fl_compiled_retain(fl_compiled *compiled)
@@ -79,10 +141,12 @@ void fl_compiled_release(fl_compiled *compiled)
 {
     if (!compiled || !fl_ref_release(&compiled->ref))
         return;
-    for (uint32_t k = 0; k < compiled->texture_count; k++)
+    bool owns_pictures = !compiled->base;
+    for (uint32_t k = 0; owns_pictures && k < compiled->texture_count; k++)
         fl_image_release(compiled->textures[k].image);
-    for (int k = 0; k < FL_CUBE_FACES; k++)
+    for (int k = 0; owns_pictures && k < FL_CUBE_FACES; k++)
         fl_image_release(compiled->cube[k]);
+    fl_compiled_release(compiled->base);
     fl_arena_deinit(&compiled->arena);
     free(compiled);
 }

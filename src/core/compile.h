@@ -46,9 +46,15 @@ typedef struct fl_texture {
     bool clamps_v; /**< Spheres and revolutions clamp v; others repeat both. */
 } fl_texture;
 
-typedef struct fl_compiled {
+typedef struct fl_compiled fl_compiled;
+
+struct fl_compiled {
     fl_ref ref;
     fl_arena arena;
+    /** A reference to what holds everything but the hierarchies of large meshes, which are the only difference between
+     *  a quickly compiled scene and the refined one. NULL: nothing is shared. */
+    fl_compiled *base;
+    bool is_quick; /**< Large meshes have quick hierarchies; fl_compile_refine makes better ones. */
     fl_geometry geometry;
     fl_shader *shaders;        /**< One per (material, texture) pair in use. */
     uint32_t *object_shader;   /**< Per object. */
@@ -62,19 +68,30 @@ typedef struct fl_compiled {
     uint64_t triangle_count, instanced_triangle_count, revolution_piece_count;
     size_t geometry_bytes, accel_bytes, texture_bytes;
     double build_seconds;      /**< Of compiling, which is mostly the acceleration structures; wall time. */
-} fl_compiled;
+};
 
 typedef struct fl_compile_options {
     fl_accel accel;
     bool has_isa; /**< False: the best this machine has. */
     fl_isa isa;
     uint32_t octree_height; /**< 0: default (8). */
+    /** With FL_ACCEL_BVH, meshes of more triangles than this get a quick hierarchy first, for the caller to refine while
+     *  the scene is rendered; 0: none. */
+    uint32_t quick_above;
 } fl_compile_options;
+
+/** Where building quickly first begins to pay (docs/performance.md). */
+enum { FL_QUICK_ABOVE = 1000000 };
 
 /** Compile. `scene` may go afterwards (pictures and meshes are retained or copied). `pool` speeds up building; NULL: this
  *  thread alone, same result. NULL after adding an error. O(n log n) in primitives. */
 fl_compiled *fl_compile(const fl_scene *scene, const fl_compile_options *options, fl_pool *pool,
                         fl_diags *diags);
+
+/** Another form of a scene that is_quick, whose hierarchies are as good as they get: hits are the same to the bit, found
+ *  faster. Retains what both share. NULL after adding an error, or when the pool was cancelled. O(n log n). Any thread. */
+fl_compiled *fl_compile_refine(const fl_compiled *quick, fl_pool *pool, fl_diags *diags);
+
 fl_compiled *fl_compiled_retain(fl_compiled *compiled);
 /** Drop a reference; NULL is allowed. */
 void fl_compiled_release(fl_compiled *compiled);

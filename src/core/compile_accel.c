@@ -105,7 +105,8 @@ static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes
     fl_arena item_arena = {0};
     mesh->bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *mesh->bvh);
     bool ok = mesh->bvh &&
-              fl_bvh_build(mesh->bvh, &input, &c->out->arena, &item_arena, c->pool) &&
+              (c->is_quick ? fl_bvh_build_quick : fl_bvh_build)(
+                  mesh->bvh, &input, &c->out->arena, &item_arena, c->pool) &&
               allocate_packs(c, mesh, mesh->bvh->leaf_count);
     if (ok) {
         fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);

@@ -19,6 +19,7 @@ typedef struct fl_compiler {
     fl_diags *diags;
     fl_compiled *out;
     fl_geometry *geometry; /**< &out->geometry */
+    bool is_quick;         /**< Hierarchies of meshes are to be built quickly. */
 } fl_compiler;
 
 /** Object to world; the identity without a transform. */
@@ -52,6 +53,13 @@ bool fl_compile_entries(fl_compiler *c);
 
 /** Packs and the chosen structure of one mesh. */
 bool fl_compile_accel(fl_compiler *c, fl_tri_mesh *mesh);
+
+/** Whether that is to wait until all else is compiled, for a quick hierarchy. */
+static inline bool fl_compile_is_large(const fl_compiler *c, const fl_tri_mesh *mesh)
+{
+    return c->options->quick_above > 0 && mesh->face_count > c->options->quick_above &&
+           c->options->accel == FL_ACCEL_BVH;
+}
 
 /** Shaders, textures, cube map, needs, places. */
 bool fl_compile_shading(fl_compiler *c);

@@ -152,7 +152,7 @@ static bool store_mesh(fl_compiler *c, const fl_mesh *mesh, const mesh_key *key,
     if (key->needs_uv && mesh->uv_count > 0 && !store_uv(c, out, mesh))
         return false;
     c->out->triangle_count += mesh->face_count;
-    return fl_compile_accel(c, out);
+    return fl_compile_is_large(c, out) || fl_compile_accel(c, out);
 }
 
 /* The largest face, by the longest side of its box. */
@@ -285,7 +285,8 @@ static bool compile_loose(fl_compiler *c, uint32_t transform, uint32_t count, ui
     bound_mesh(m);
     c->out->triangle_count += count;
     c->out->needs |= FL_NEED_TRIANGLES;
-    return fl_compile_accel(c, m) && add_instance(c, first_object, FL_NONE, stored, face_size(m));
+    return (fl_compile_is_large(c, m) || fl_compile_accel(c, m)) &&
+           add_instance(c, first_object, FL_NONE, stored, face_size(m));
 }
 
 static bool compile_loose_triangles(fl_compiler *c, fl_arena *scratch)

@@ -26,6 +26,7 @@
 #include "core/parse.h"
 #include "core/pool.h"
 #include "core/raytree.h"
+#include "core/refine.h"
 #include "core/render.h"
 #include "core/scene.h"
 #include "core/scene_map.h"

@@ -21,18 +21,20 @@ typedef struct fl_helper {
 struct fl_pool {
     pthread_mutex_t lock;
     pthread_cond_t begin, end;
-    fl_loop loop;               /* Written under the lock before `number` changes. */
-    uint64_t number;            /* Of the current loop; under the lock. */
-    uint32_t running;           /* Helpers that have not finished it; under the lock. */
-    bool should_stop;           /* Under the lock. */
+    fl_loop loop;     /* Written under the lock before `number` changes. */
+    uint64_t number;  /* Of the current loop; under the lock. */
+    uint32_t running; /* Helpers that have not finished it; under the lock. */
+    bool should_stop; /* Under the lock. */
+    atomic_bool is_cancelled;
     atomic_uint_least64_t next; /* First index not handed out; 64 bits so that it cannot wrap. */
     uint32_t helper_count;
     fl_helper helpers[];
 };
 
-static void run_loop(const fl_loop *loop, atomic_uint_least64_t *next, uint32_t thread)
+static void run_loop(const fl_pool *pool, const fl_loop *loop, atomic_uint_least64_t *next,
+                     uint32_t thread)
 {
-    for (;;) {
+    while (!fl_pool_is_cancelled(pool)) {
         uint64_t begin = atomic_fetch_add_explicit(next, loop->grain, memory_order_relaxed);
         if (begin >= loop->count)
             return;
@@ -56,7 +58,7 @@ static void *helper_main(void *argument)
         seen = pool->number;
         fl_loop loop = pool->loop;
         pthread_mutex_unlock(&pool->lock);
-        run_loop(&loop, &pool->next, helper->index);
+        run_loop(pool, &loop, &pool->next, helper->index);
         pthread_mutex_lock(&pool->lock);
         if (--pool->running == 0)
             pthread_cond_signal(&pool->end);
@@ -88,6 +90,7 @@ fl_pool *fl_pool_create(uint32_t thread_count, fl_diags *diags)
     pthread_cond_init(&pool->begin, NULL);
     pthread_cond_init(&pool->end, NULL);
     atomic_init(&pool->next, 0);
+    atomic_init(&pool->is_cancelled, false);
     while (pool->helper_count < wanted) {
         fl_helper *helper = &pool->helpers[pool->helper_count];
         helper->pool = pool;
@@ -133,7 +136,7 @@ void fl_parallel_for(fl_pool *pool, uint32_t count, uint32_t grain,
     if (!pool || pool->helper_count == 0 || count <= loop.grain) {
         atomic_uint_least64_t next;
         atomic_init(&next, 0);
-        run_loop(&loop, &next, 0);
+        run_loop(pool, &loop, &next, 0);
         return;
     }
     pthread_mutex_lock(&pool->lock);
@@ -145,10 +148,20 @@ void fl_parallel_for(fl_pool *pool, uint32_t count, uint32_t grain,
     pthread_cond_broadcast(&pool->begin);
     pthread_mutex_unlock(&pool->lock);
 
-    run_loop(&loop, &pool->next, 0);
+    run_loop(pool, &loop, &pool->next, 0);
 
     pthread_mutex_lock(&pool->lock);
     while (pool->running > 0)
         pthread_cond_wait(&pool->end, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
+}
+
+void fl_pool_cancel(fl_pool *pool)
+{
+    atomic_store_explicit(&pool->is_cancelled, true, memory_order_relaxed);
+}
+
+bool fl_pool_is_cancelled(const fl_pool *pool)
+{
+    return pool && atomic_load_explicit(&pool->is_cancelled, memory_order_relaxed);
 }

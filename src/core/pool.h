@@ -34,4 +34,11 @@ void fl_parallel_for(fl_pool *pool, uint32_t count, uint32_t grain,
                      void (*body)(void *context, uint32_t begin, uint32_t end, uint32_t thread),
                      void *context);
 
+/** From now on loops hand out nothing more and soon return, with parts of their work not done. Any
+ * thread, any time. */
+void fl_pool_cancel(fl_pool *pool);
+
+/** Whether that was called; false for NULL. After a loop: whether it may be incomplete. */
+bool fl_pool_is_cancelled(const fl_pool *pool);
+
 #endif

@@ -213,6 +213,50 @@ bool fl_render_restart(fl_render *render, fl_compiled *scene, const fl_params *p
     return is_done;
 }
 
+/* Where a job keeps its frame, and the pending one; the lock is held. */
+enum { FRAME_SLOTS = 3 };
+
+static void frame_slots(fl_render *render, fl_frame **out_slots[FRAME_SLOTS])
+{
+    out_slots[0] = render->current ? &render->current->frame : NULL;
+    out_slots[1] = render->shown && render->shown != render->current ? &render->shown->frame : NULL;
+    out_slots[2] = &render->pending_frame;
+}
+
+bool fl_render_replace_scene(fl_render *render, fl_compiled *scene, fl_diags *diags)
+{
+    fl_frame **slots[FRAME_SLOTS], *old[FRAME_SLOTS] = {NULL}, *next[FRAME_SLOTS] = {NULL};
+    fl_trash trash = {0};
+    bool ok = true;
+    pthread_mutex_lock(&render->lock);
+    frame_slots(render, slots);
+    for (int i = 0; i < FRAME_SLOTS; i++)
+        if (slots[i] && *slots[i] && scene->base && (*slots[i])->scene->base == scene->base)
+            old[i] = fl_frame_retain(*slots[i]);
+    pthread_mutex_unlock(&render->lock);
+
+    for (int i = 0; i < FRAME_SLOTS && ok; i++)
+        ok = !old[i] || (next[i] = fl_frame_create(scene, &old[i]->params, diags)) != NULL;
+
+    /* A frame may have moved on meanwhile, from pending to current, or be gone. */
+    pthread_mutex_lock(&render->lock);
+    frame_slots(render, slots);
+    for (int i = 0; i < FRAME_SLOTS && ok; i++)
+        for (int k = 0; k < FRAME_SLOTS; k++)
+            if (old[k] && slots[i] && *slots[i] == old[k]) {
+                trash.frames[trash.frame_count++] = *slots[i];
+                *slots[i] = fl_frame_retain(next[k]);
+                break;
+            }
+    pthread_mutex_unlock(&render->lock);
+    fl_trash_empty(&trash);
+    for (int i = 0; i < FRAME_SLOTS; i++) {
+        fl_frame_release(old[i]);
+        fl_frame_release(next[i]);
+    }
+    return ok;
+}
+
 void fl_render_set_limits(fl_render *render, const fl_render_limits *limits)
 {
     pthread_mutex_lock(&render->lock);

@@ -89,6 +89,12 @@ void fl_render_destroy(fl_render *render);
 bool fl_render_restart(fl_render *render, fl_compiled *scene, const fl_params *params,
                        fl_diags *diags);
 
+/** Go on with another form of the scene: `scene` and that of a picture are of one base (compile.h).
+ * Samples and generation stay, and what is under way ends as it began: since hits are the same, the
+ * film's bytes are those of either form. Counts of node visits and tests are then of both. Pictures
+ * of other scenes are left alone. Any thread. False after adding an error: all is as it was. */
+bool fl_render_replace_scene(fl_render *render, fl_compiled *scene, fl_diags *diags);
+
 /** All that is needed to go on later, as bytes from malloc for fl_render_resume; NULL and 0 when
  * sample 0 is not complete. Waits for the units that are out and holds the render meanwhile, about
  * as long as copying the film takes. Not for adaptive sampling. False after adding an error: out of

@@ -408,6 +408,7 @@ static bool loop(app *a, fl_diags *diags)
         reload_if_changed(a);
         take_events(a);
         take_loaded(a);
+        a->needs_draw |= vw_session_take_refined(&a->session);
         a->needs_draw |= had_message != (vw_state_message(&a->session.state) != NULL);
         restart_if_due(a);
         refresh_if_due(a);

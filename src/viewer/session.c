@@ -78,6 +78,53 @@ static fl_render_options render_options(const vw_session *session)
                                .notify_context = session->notify_context};
 }
 
+/* --- Refining -------------------------------------------------------------------------------- */
+
+static void wake_owner(void *context, fl_compiled *refined)
+{
+    const vw_session *session = context;
+    (void)refined;
+    if (session->notify)
+        session->notify(session->notify_context);
+}
+
+/* What cannot be started is no reason to stop: the quick hierarchies do. */
+static void begin_refining(vw_session *session)
+{
+    if (!session->scene.compiled->is_quick)
+        return;
+    fl_diags diags = {0};
+    session->refine = fl_refine_start(session->scene.compiled, session->options->thread_count,
+                                      wake_owner, session, &diags);
+    session->state.is_refining = session->refine != NULL;
+    fl_diags_deinit(&diags);
+}
+
+static void end_refining(vw_session *session)
+{
+    fl_refine_destroy(session->refine);
+    session->refine = NULL;
+    session->state.is_refining = false;
+}
+
+bool vw_session_take_refined(vw_session *session)
+{
+    if (!session->refine || fl_refine_is_busy(session->refine))
+        return false;
+    fl_compiled *refined = fl_refine_take(session->refine);
+    end_refining(session);
+    if (!refined)
+        return true;
+    fl_diags diags = {0}; /* Where memory is short a picture goes on as it is; the next will not. */
+    fl_render_replace_scene(session->render, refined, &diags);
+    if (session->mix.unit)
+        fl_render_replace_scene(session->mix.unit, refined, &diags);
+    fl_diags_deinit(&diags);
+    fl_compiled_release(session->scene.compiled);
+    session->scene.compiled = refined;
+    return true;
+}
+
 bool vw_session_start(vw_session *session, void (*notify)(void *context), void *notify_context,
                       fl_diags *diags)
 {
@@ -88,11 +135,13 @@ bool vw_session_start(vw_session *session, void (*notify)(void *context), void *
     if (!session->render)
         return false;
     vw_session_set_limits(session);
+    begin_refining(session);
     return true;
 }
 
 void vw_session_close(vw_session *session)
 {
+    end_refining(session);
     fl_render_destroy(session->render);
     vw_mix_end(&session->mix);
     vw_show_deinit(&session->show);
@@ -223,6 +272,7 @@ bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
 bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *scene, fl_diags *diags)
 {
     bool is_same = strcmp(path, session->scene_path) == 0;
+    end_refining(session);
     vw_scene_deinit(&session->scene);
     session->scene = *scene;
     session->state.is_mixing = false;
@@ -230,11 +280,13 @@ bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *sce
     if (is_same) {
         vw_state_rebase(&session->state, &scene->params, scene->compiled, sample_cap(session));
         vw_history_begin(&session->history, &session->state, false);
-        return true;
-    }
-    if (!set_path(session, scene->path[0] ? scene->path : path, diags))
+    } else if (set_path(session, scene->path[0] ? scene->path : path, diags)) {
+        begin_scene(session, diags);
+    } else {
         return false;
-    begin_scene(session, diags);
+    }
+    if (session->render)
+        begin_refining(session);
     return true;
 }
 
@@ -288,7 +340,8 @@ static bool refresh_picture(vw_session *session, fl_diags *diags)
 
 bool vw_session_refresh(vw_session *session, fl_diags *diags)
 {
-    bool is_changed = refresh_picture(session, diags);
+    bool is_changed = vw_session_take_refined(session);
+    is_changed |= refresh_picture(session, diags);
     if (!session->show.is_asked)
         vw_show_ask(session, diags);
     is_changed |= vw_show_take(session);

@@ -25,6 +25,7 @@ typedef struct vw_session {
     vw_input input;
     vw_keymap *keymap; /**< Owned; NULL: the table's. */
     fl_render *render;
+    fl_refine *refine; /**< Of a scene that was compiled quickly; else NULL. */
     fl_progress progress; /**< As of the last refresh. */
     uint8_t *rgba;        /**< The picture shown: progress.width x progress.height. Owned. */
     size_t rgba_bytes;
@@ -83,6 +84,10 @@ vw_dirty vw_session_paste(vw_session *session, const char *text);
 /** The camera as text for the clipboard: options in a comment, then scene text. Length as snprintf.
  */
 size_t vw_session_copy(const vw_session *session, char *out, size_t out_bytes);
+
+/** Render with the better hierarchies of a scene that was compiled quickly, once they are there;
+ * true: that has just ended, well or for want of memory. vw_session_refresh does it too. */
+bool vw_session_take_refined(vw_session *session);
 
 /** Get newer bytes and progress; true: what is shown changed. Never waits for a worker. */
 bool vw_session_refresh(vw_session *session, fl_diags *diags);

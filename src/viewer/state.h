@@ -161,6 +161,7 @@ typedef struct vw_state {
     /* Window. */
     uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
     bool is_hud_shown, is_paused;
+    bool is_refining;       /**< Better hierarchies are on their way. */
     bool is_hidden;         /**< The window is iconified: nothing is rendered or drawn. */
     uint32_t width, height; /**< Framebuffer, pixels. */
     bool follows_window;    /**< The picture takes the window's size; else it keeps its own and is

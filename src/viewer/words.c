@@ -174,6 +174,7 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
                        : state->is_paused                    ? "paused"
                        : progress->state == FL_RENDER_DONE   ? "done"
                        : progress->state == FL_RENDER_FAILED ? "out of memory"
+                       : state->is_refining                  ? "refining the hierarchy"
                        : progress->complete_samples == 0     ? "first look"
                                                              : "rendering";
     snprintf(s->value, sizeof s->value, "%s", word);

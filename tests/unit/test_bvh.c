@@ -101,6 +101,43 @@ static bool build(fl_bvh *out, fl_arena *arena, const fl_bvh_box *boxes, uint32_
     return fl_bvh_build(out, &input, arena, arena, pool);
 }
 
+/* The quick tree: full leaves and nodes, the same for any number of threads, and leaves that are
+ * small where boxes are many. */
+static void quick_trees_are_full(void **state)
+{
+    static const uint32_t counts[] = {1, 2, 7, 8, 9, 64, 65, 513, 20000, 140000};
+    (void)state;
+    for (size_t k = 0; k < FL_COUNT_OF(counts); k++) {
+        fl_bvh_box *boxes = random_boxes(counts[k], 7 + k, 0.001f);
+        const fl_bvh_input input = {boxes, counts[k], 0.01f, 0.5f, true};
+        fl_arena arenas[2] = {{0}};
+        fl_bvh trees[2];
+        fl_diags diags = {0};
+        fl_pool *pools[2] = {NULL, fl_pool_create(3, &diags)};
+        for (int t = 0; t < 2; t++) {
+            assert_true(fl_bvh_build_quick(&trees[t], &input, &arenas[t], &arenas[t], pools[t]));
+            assert_true(trees[t].origin_pad == 0.5f);
+        }
+        check_tree(&trees[0], boxes, counts[k], 0.01f);
+        assert_int_equal(trees[0].leaf_count, (counts[k] + 7) / 8);
+        assert_true(trees[0].node_count <= trees[0].leaf_count / 7 + 8);
+        assert_int_equal(trees[1].node_count, trees[0].node_count);
+        assert_memory_equal(trees[1].nodes, trees[0].nodes,
+                            trees[0].node_count * sizeof *trees[0].nodes);
+        assert_memory_equal(trees[1].items, trees[0].items,
+                            trees[0].leaf_count * 8 * sizeof *trees[0].items);
+        if (counts[k] == 140000) { /* 17,500 leaves in a unit cube: sides of 1/26 if cubes. */
+            const fl_bvh_node *last = &trees[0].nodes[trees[0].node_count - 1];
+            float side = last->plane[1][0] - last->plane[0][0];
+            assert_true(last->has_leaf && side < 0.15f);
+        }
+        fl_pool_destroy(pools[1]);
+        fl_arena_deinit(&arenas[0]);
+        fl_arena_deinit(&arenas[1]);
+        free(boxes);
+    }
+}
+
 static void every_box_is_held_once(void **state)
 {
     static const uint32_t counts[] = {1, 2, 7, 8, 9, 64, 65, 1000, 20000};
@@ -250,6 +287,7 @@ static void octree_of_overlapping_boxes_stays_small(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quick_trees_are_full),
         cmocka_unit_test(every_box_is_held_once),
         cmocka_unit_test(threads_do_not_change_the_tree),
         cmocka_unit_test(degenerate_boxes_stay_shallow),

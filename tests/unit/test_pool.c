@@ -108,10 +108,43 @@ static void zero_threads_means_one_per_cpu(void **state)
     assert_int_equal(fl_thread_count(UINT32_MAX), FL_THREADS_MAX);
 }
 
+typedef struct broken {
+    fl_pool *pool;
+    atomic_uint done;
+} broken;
+
+static void break_off(void *context, uint32_t begin, uint32_t end, uint32_t thread)
+{
+    broken *b = context;
+    (void)thread;
+    if (atomic_fetch_add(&b->done, end - begin) == 10)
+        fl_pool_cancel(b->pool);
+}
+
+static void cancelled_loops_end_early(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    for (uint32_t threads = 1; threads <= 3; threads++) {
+        broken b = {.pool = fl_pool_create(threads, &diags)};
+        assert_non_null(b.pool);
+        assert_false(fl_pool_is_cancelled(b.pool));
+        fl_parallel_for(b.pool, 1000000000, 1, break_off, &b);
+        assert_true(fl_pool_is_cancelled(b.pool));
+        assert_true(atomic_load(&b.done) < 1000000000);
+        atomic_store(&b.done, 0);
+        fl_parallel_for(b.pool, 100, 1, break_off, &b); /* For good. */
+        assert_int_equal(atomic_load(&b.done), 0);
+        fl_pool_destroy(b.pool);
+    }
+    assert_false(fl_pool_is_cancelled(NULL));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_index_is_visited_once),
+        cmocka_unit_test(cancelled_loops_end_early),
         cmocka_unit_test(no_pool_means_this_thread),
         cmocka_unit_test(the_end_of_a_loop_shows_all_its_writes),
         cmocka_unit_test(a_count_near_the_limit_ends),

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Scenes for viewer tests: read, parse and compile a file, or what a saved picture names, as the
- * program does, without options.
+ * program does, without options. The loader's context, if there is one, is a uint32_t: how many
+ * triangles of a mesh are not many yet (fl_compile_options.quick_above).
  */
 #ifndef VIEWER_LOADER_H
 #define VIEWER_LOADER_H
@@ -15,7 +16,6 @@
 
 static inline bool viewer_test_load(void *context, const char *path, vw_scene *out, fl_diags *diags)
 {
-    (void)context;
     size_t bytes;
     fl_saved_state state = {0};
     if (fl_saved_state_is_for(path) && !fl_saved_state_load(path, &state, diags))
@@ -25,7 +25,7 @@ static inline bool viewer_test_load(void *context, const char *path, vw_scene *o
     char *text =
         fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, diags, &bytes);
     fl_parse_options parse = {0};
-    fl_compile_options compile = {0};
+    fl_compile_options compile = {.quick_above = context ? *(const uint32_t *)context : 0};
     if (text)
         out->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, diags);
     free(text);
