@@ -266,7 +266,8 @@ static void judge_by_double(const bench *b, const leaving *l, bool is_hit, tally
 static void judge(const bench *b, const kind *k, const leaving *l, uint32_t i, tally *t)
 {
     const fl_hits *hits = &b->piece.hits;
-    bool is_hit = hits->object[i] == l->object, is_outward = fl_v3_dot(l->ng, l->d) > 0.0;
+    bool is_hit = hits->object[i] == l->object;
+    bool is_outward = !signbit(fl_v3_dot(l->ng, l->d)); /* The side that leave() stepped to. */
     t->rays++;
     if (k->truth == BY_DOUBLE) {
         judge_by_double(b, l, hits->object[i] != FL_NONE, t);
