@@ -85,12 +85,17 @@ static void add_arrivals(const fl_shadow *shadow, fl_array3 sum)
     }
 }
 
-static void add_mean(fl_array3 sum, fl_array3 part, float samples, uint32_t count)
+/* Samples of a light that are summed before they go to the radiance: sums of more lose digits. */
+enum { LIGHT_BLOCK = 1024 };
+
+/* Adds `part` divided by `samples` to `sum`, and leaves in it what rounding lost, for the next
+ * block. [Kahan 1965] */
+static void move_mean(float *sum, float *part, float samples, uint32_t count)
 {
     for (uint32_t i = 0; i < count; i++) {
-        sum.x[i] += part.x[i] / samples;
-        sum.y[i] += part.y[i] / samples;
-        sum.z[i] += part.z[i] / samples;
+        float mean = part[i] / samples, rounded = sum[i] + mean;
+        part[i] = (mean - (rounded - sum[i])) * samples;
+        sum[i] = rounded;
     }
 }
 
@@ -121,9 +126,14 @@ static bool add_lights(fl_pipe *pipe)
             }
             tell(pipe, FL_AT_SHADOW, l, j);
             add_arrivals(&work->shadow, sum);
+            bool ends_block = j + 1 == light->samples || (j + 1) % LIGHT_BLOCK == 0;
+            if (light->samples > 1 && ends_block) {
+                float samples = (float)light->samples;
+                move_mean(stage->radiance.x, work->lit.x, samples, count);
+                move_mean(stage->radiance.y, work->lit.y, samples, count);
+                move_mean(stage->radiance.z, work->lit.z, samples, count);
+            }
         }
-        if (light->samples > 1)
-            add_mean(stage->radiance, work->lit, (float)light->samples, count);
     }
     fl_pipe_lap(pipe, FL_COST_LIGHT);
     return true;
