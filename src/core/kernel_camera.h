@@ -57,40 +57,57 @@ FL_INLINE void fl_camera_store(const fl_frame *f, fl_wf x, fl_wf y, fl_wf lens_x
     fl_wu_store(rays->source_prim + at, fl_wu_set(FL_NONE));
 }
 
+/* Coordinates in the pixel and on the lens for the pixels of the stage. */
+typedef struct fl_camera_numbers {
+    float pixel[2][FL_STREAM_RAYS + FL_STREAM_SLACK], lens[2][FL_STREAM_RAYS + FL_STREAM_SLACK];
+} fl_camera_numbers;
+
+FL_INLINE void fl_camera_draw(const fl_frame *frame, uint32_t sample, uint32_t count,
+                              const fl_stage *stage, fl_camera_numbers *out)
+{
+    const fl_params *params = &frame->params;
+    uint32_t pixel_sample = params->frozen & FL_FREEZE_PIXEL ? 0 : sample;
+    uint32_t lens_sample = params->frozen & FL_FREEZE_LENS ? 0 : sample;
+    bool has_pixel = frame->plan.samples_pixel, has_lens = frame->plan.samples_lens;
+    float *numbers[] = {out->pixel[0], out->pixel[1], out->lens[0], out->lens[1]};
+    fl_sample_pass pass =
+        fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA, pixel_sample);
+    pass.strata = params->strata;
+    if (has_pixel && has_lens && pixel_sample == lens_sample) {
+        fl_sample_fill(&pass, stage->pixel, count, 0, 4, numbers);
+        return;
+    }
+    if (has_pixel)
+        fl_sample_fill(&pass, stage->pixel, count, 0, 2, numbers);
+    if (!has_lens)
+        return;
+    uint32_t first = has_pixel ? 2 : 0;
+    pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA, lens_sample);
+    pass.strata = params->strata;
+    fl_sample_fill(&pass, stage->pixel, count, first, first + 2, numbers + 2);
+}
+
 FL_INLINE void fl_camera_generate(const fl_frame *frame, const fl_unit *unit, uint32_t begin,
                                   uint32_t count, fl_stage *stage)
 {
     const fl_frame_plan *plan = &frame->plan;
-    const fl_params *params = &frame->params;
-    fl_sample_pass pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
-                                               params->frozen & FL_FREEZE_PIXEL ? 0 : unit->sample);
-    pass.strata = params->strata;
-    fl_sample_pass lens_pass = pass;
-    bool is_apart = (params->frozen & (FL_FREEZE_PIXEL | FL_FREEZE_LENS)) != 0;
-    if (is_apart)
-        lens_pass = fl_sample_pass_begin(params->sampler, params->seed, FL_SET_CAMERA,
-                                         params->frozen & FL_FREEZE_LENS ? 0 : unit->sample);
-    lens_pass.strata = params->strata;
+    fl_camera_numbers numbers;
     for (uint32_t i = 0; i < count; i++)
         stage->pixel[i] = fl_pixel_id(unit->x[begin + i], unit->y[begin + i]);
+    fl_camera_draw(frame, unit->sample, count, stage, &numbers);
 
     for (uint32_t i = 0; i < count; i += FL_W) {
         fl_wu pixel = fl_wu_load(stage->pixel + i);
-        fl_wu key = fl_wu_sample_key(&pass, pixel);
         fl_wf jitter_x = fl_wf_set((float)frame->pixel_x),
               jitter_y = fl_wf_set((float)frame->pixel_y);
         fl_wf lens_x = fl_wf_set(0.0f), lens_y = lens_x;
-        uint32_t dimension = 0;
         if (plan->samples_pixel) {
-            jitter_x = fl_wf_sample(&pass, key, dimension++);
-            jitter_y = fl_wf_sample(&pass, key, dimension++);
+            jitter_x = fl_wf_load(numbers.pixel[0] + i);
+            jitter_y = fl_wf_load(numbers.pixel[1] + i);
         }
-        if (plan->samples_lens) {
-            fl_wu lens_key = is_apart ? fl_wu_sample_key(&lens_pass, pixel) : key;
-            fl_wf u = fl_wf_sample(&lens_pass, lens_key, dimension),
-                  v = fl_wf_sample(&lens_pass, lens_key, dimension + 1);
-            fl_wf_warp_aperture(&frame->opening, u, v, &lens_x, &lens_y);
-        }
+        if (plan->samples_lens)
+            fl_wf_warp_aperture(&frame->opening, fl_wf_load(numbers.lens[0] + i),
+                                fl_wf_load(numbers.lens[1] + i), &lens_x, &lens_y);
         fl_wf x = fl_wf_from_wi((fl_wi)(pixel & 0xffffu)), y = fl_wf_from_wi((fl_wi)(pixel >> 16));
         fl_camera_store(frame, x, y, lens_x, lens_y, jitter_x, jitter_y, &stage->rays, i);
         fl_wu_store(stage->path + i, fl_wu_set(FL_PATH_CAMERA));

@@ -37,24 +37,34 @@ static void orient(const fl_frame *frame, fl_stage *stage)
     }
 }
 
+/* Coordinates on the light for the rays of the stage. */
+typedef struct light_numbers {
+    float u[FL_STREAM_RAYS + FL_STREAM_SLACK], v[FL_STREAM_RAYS + FL_STREAM_SLACK];
+} light_numbers;
+
+static void draw_light(const fl_frame *frame, const fl_frame_light *light, uint32_t index,
+                       const fl_stage *stage, light_numbers *out)
+{
+    const fl_params *params = &frame->params;
+    uint32_t set = fl_set_light(params->seed, FL_PATH_CAMERA, light->index);
+    fl_sample_pass pass = fl_sample_pass_begin(params->sampler, params->seed, set, index);
+    pass.strata = params->strata * light->samples;
+    float *const numbers[] = {out->u, out->v};
+    if (stage->is_camera)
+        fl_sample_fill(&pass, stage->pixel, stage->rays.count, 0, 2, numbers);
+    else
+        fl_sample_fill_light(&pass, light->index, stage->pixel, stage->path, stage->rays.count,
+                             numbers);
+}
+
 /* A point of the light for each of the lanes at `at`. */
-FL_INLINE wide3 light_point(const fl_frame *frame, const fl_frame_light *light,
-                            const fl_sample_pass *pass, const fl_stage *stage, uint32_t at)
+FL_INLINE wide3 light_point(const fl_frame_light *light, const light_numbers *numbers, uint32_t at)
 {
     if (!light->draws)
         return set3(light->position);
-    fl_wf u, v, point[3];
-    fl_wu pixel = fl_wu_load(stage->pixel + at);
-    if (stage->is_camera) {
-        fl_wu key = fl_wu_sample_key(pass, pixel);
-        u = fl_wf_sample(pass, key, 0);
-        v = fl_wf_sample(pass, key, 1);
-    } else {
-        fl_wu set = fl_wu_set_light(frame->params.seed, fl_wu_load(stage->path + at), light->index);
-        fl_wf_sample_pair(pass->kind, pass->seed, pixel, fl_wu_set(pass->index), set, pass->strata,
-                          &u, &v);
-    }
-    fl_wf_warp_disk_light(light->position, light->axis_u, light->axis_v, u, v, point);
+    fl_wf point[3];
+    fl_wf_warp_disk_light(light->position, light->axis_u, light->axis_v,
+                          fl_wf_load(numbers->u + at), fl_wf_load(numbers->v + at), point);
     return (wide3){point[0], point[1], point[2]};
 }
 
@@ -114,19 +124,18 @@ static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sa
 {
     uint32_t set_bit = stage->is_camera ? fl_freeze_light(from->index) : FL_FREEZE_DEEPER;
     uint32_t number = frame->params.frozen & set_bit ? 0 : sample;
-    uint32_t count = stage->rays.count, index = number * from->samples + j;
+    uint32_t count = stage->rays.count;
     bool is_far = from->kind == FL_LIGHT_DIRECTIONAL;
-    uint32_t camera_set = fl_set_light(frame->params.seed, FL_PATH_CAMERA, from->index);
-    fl_sample_pass pass =
-        fl_sample_pass_begin(frame->params.sampler, frame->params.seed, camera_set, index);
-    pass.strata = frame->params.strata * from->samples;
+    light_numbers numbers;
+    if (from->draws)
+        draw_light(frame, from, number * from->samples + j, stage, &numbers);
     out->rays.count = 0;
     for (uint32_t i = 0; i < count; i += FL_W) {
         fl_wm live = fl_wm_first(count - i);
         wide3 point = load_point(stage, i), geometric = load_geometric(stage, i);
         wide3 color = set3(from->color), target = {0}, to_light = set3(from->to_light);
         if (!is_far) {
-            target = light_point(frame, from, &pass, stage, i);
+            target = light_point(from, &numbers, i);
             wide3 way = mad3(target, point, fl_wf_set(-1.0f));
             fl_wf square = dot3(way, way), distance = fl_wf_sqrt(square);
             live &= square > 0.0f;

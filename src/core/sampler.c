@@ -37,7 +37,8 @@ fl_sample_pass fl_sample_pass_begin(fl_sampler kind, uint32_t seed, uint32_t set
     fl_sample_pass pass = {.kind = kind, .seed = seed, .set = set, .index = index};
     bool is_sobol = kind == FL_SAMPLER_SOBOL || kind == FL_SAMPLER_PADDED;
     for (uint32_t d = 0; is_sobol && d < FL_SAMPLE_DIMENSIONS; d++)
-        pass.raw_reversed[d] = fl_reverse_bits(fl_sample_raw(kind, seed, index, set, d));
+        pass.raw_first[d] =
+            fl_owen_first(fl_reverse_bits(fl_sample_raw(kind, seed, index, set, d)));
     return pass;
 }
 

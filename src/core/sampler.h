@@ -65,10 +65,16 @@ static inline uint32_t fl_reverse_bits(uint32_t x)
     return __builtin_bswap32(x);
 }
 
+/** The step of fl_owen_reversed that needs no seed. */
+static inline uint32_t fl_owen_first(uint32_t n)
+{
+    return n ^ n * 0x3d20adeau;
+}
+
 /** Owen scrambling of a bit-reversed number: each bit is flipped by a hash of the bits below it. */
 static inline uint32_t fl_owen_reversed(uint32_t n, uint32_t seed)
 {
-    n ^= n * 0x3d20adeau;
+    n = fl_owen_first(n);
     n += seed;
     n *= seed >> 16 | 1u;
     n ^= n * 0x05526c56u;
@@ -137,7 +143,8 @@ typedef struct fl_sample_pass {
     fl_sampler kind;
     uint32_t seed, set, index;
     uint32_t strata; /* FL_SAMPLER_STRATIFIED only; the caller sets it. */
-    uint32_t raw_reversed[FL_SAMPLE_DIMENSIONS]; /* bit-reversed raw points, as scrambling wants */
+    /* Raw points as scrambling wants them: bit-reversed, and what it does first done. */
+    uint32_t raw_first[FL_SAMPLE_DIMENSIONS];
 } fl_sample_pass;
 
 fl_sample_pass fl_sample_pass_begin(fl_sampler kind, uint32_t seed, uint32_t set, uint32_t index);

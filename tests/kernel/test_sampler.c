@@ -13,7 +13,7 @@ enum { N = 1 << 14 };
 #define SEED 0x77c3u
 
 static float got[4 * N], want[4 * N], u[N], v[N];
-static uint32_t pixels[N], indices[N], paths[N];
+static uint32_t pixels[N], paths[N];
 
 /* --- definition ------------------------------------------------------------------------------ */
 
@@ -231,7 +231,6 @@ static void fill_lanes(void)
 {
     for (uint32_t i = 0; i < N; i++) {
         pixels[i] = i < N / 2 ? fl_pixel_id(i % 640, i / 640) : fl_hash_step(SEED, i);
-        indices[i] = i < N / 2 ? i % 300 : fl_hash_step(SEED + 1, i);
         paths[i] = i < N / 4 ? FL_PATH_CAMERA : fl_path_child(SEED, i / 3, i % 2);
     }
 }
@@ -257,11 +256,13 @@ static void test_wide_equals_scalar(void **state)
         for (uint32_t code = 0; code < 3 * 8; code++) {
             fl_sampler kind = (fl_sampler)(code % 3);
             uint32_t light = code / 3, seed = fl_hash_step(SEED, light);
-            table->sample_pair(got, kind, seed, pixels, indices, paths, light, N);
+            uint32_t index = light < 4 ? light : fl_hash_step(SEED + 1, light);
+            fl_sample_pass pass = fl_sample_pass_begin(kind, seed, 0, index);
+            table->sample_light(got, &pass, light, pixels, paths, N);
             for (size_t i = 0; i < N; i++) {
                 uint32_t set = fl_set_light(seed, paths[i], light);
-                want[i] = fl_sample_scalar(kind, seed, pixels[i], indices[i], set, 0);
-                want[N + i] = fl_sample_scalar(kind, seed, pixels[i], indices[i], set, 1);
+                want[i] = fl_sample_scalar(kind, seed, pixels[i], index, set, 0);
+                want[N + i] = fl_sample_scalar(kind, seed, pixels[i], index, set, 1);
             }
             assert_memory_equal(got, want, 2 * N * sizeof *got);
         }
@@ -289,12 +290,12 @@ static void test_stratified_wide_equals_scalar(void **state)
                     want[d * N + i] =
                         fl_sample_stratified(SEED, pixels[i], 7 * step, step, d, 5 + step);
             assert_memory_equal(got, want, sizeof want);
-            table->sample_pair(got, FL_SAMPLER_STRATIFIED, SEED, pixels, indices, paths, step, N);
+            table->sample_light(got, &pass, step, pixels, paths, N);
             for (size_t i = 0; i < N; i++) {
                 uint32_t set = fl_set_light(SEED, paths[i], step);
                 for (uint32_t d = 0; d < 2; d++)
-                    want[d * N + i] = fl_sample_stratified(SEED, pixels[i], indices[i], set, d,
-                                                           WIDE_TABLE_STRATA);
+                    want[d * N + i] =
+                        fl_sample_stratified(SEED, pixels[i], 7 * step, set, d, 5 + step);
             }
             assert_memory_equal(got, want, 2 * N * sizeof *got);
         }
@@ -470,7 +471,7 @@ static void time_round(const fl_wide_table *table, uint32_t i, double out_ns[COS
     fl_sample_pass pass = fl_sample_pass_begin(FL_SAMPLER_SOBOL, SEED, FL_SET_CAMERA, i);
     table->sample(got, &pass, pixels, N);
     at[1] = cpu_ns();
-    table->sample_pair(got, FL_SAMPLER_SOBOL, SEED, pixels, indices, paths, i, N);
+    table->sample_light(got, &pass, i, pixels, paths, N);
     at[2] = cpu_ns();
     table->warp(got, &round, u, v, N);
     at[3] = cpu_ns();

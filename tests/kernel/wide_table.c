@@ -83,24 +83,15 @@ static uint32_t first(uint32_t count)
 
 static void sample(float *out, const fl_sample_pass *pass, const uint32_t *pixel, size_t n)
 {
-    for (size_t i = 0; i < n; i += FL_W) {
-        fl_wu key = fl_wu_sample_key(pass, fl_wu_load(pixel + i));
-        for (uint32_t d = 0; d < FL_SAMPLE_DIMENSIONS; d++)
-            fl_wf_store(out + d * n + i, fl_wf_sample(pass, key, d));
-    }
+    float *const numbers[] = {out, out + n, out + 2 * n, out + 3 * n};
+    fl_sample_fill(pass, pixel, (uint32_t)n, 0, FL_SAMPLE_DIMENSIONS, numbers);
 }
 
-static void sample_pair(float *out, fl_sampler kind, uint32_t seed, const uint32_t *pixel,
-                        const uint32_t *index, const uint32_t *path, uint32_t light, size_t n)
+static void sample_light(float *out, const fl_sample_pass *pass, uint32_t light,
+                         const uint32_t *pixel, const uint32_t *path, size_t n)
 {
-    for (size_t i = 0; i < n; i += FL_W) {
-        fl_wf u, v;
-        fl_wu set = fl_wu_set_light(seed, fl_wu_load(path + i), light);
-        fl_wf_sample_pair(kind, seed, fl_wu_load(pixel + i), fl_wu_load(index + i), set,
-                          WIDE_TABLE_STRATA, &u, &v);
-        fl_wf_store(out + i, u);
-        fl_wf_store(out + n + i, v);
-    }
+    float *const numbers[] = {out, out + n};
+    fl_sample_fill_light(pass, light, pixel, path, (uint32_t)n, numbers);
 }
 
 static void path_child(uint32_t *out, uint32_t seed, const uint32_t *path, uint32_t branch,
@@ -142,7 +133,7 @@ const fl_wide_table FL_ISA_NAME(fl_wide_table) = {
     .mask_queries = mask_queries,
     .first = first,
     .sample = sample,
-    .sample_pair = sample_pair,
+    .sample_light = sample_light,
     .path_child = path_child,
     .warp = warp,
     .disk_light = disk_light,

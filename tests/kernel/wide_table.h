@@ -20,8 +20,9 @@ typedef void fl_wide_run(float *out, const float *a, const float *b, size_t n);
     X(max, 1)                                                                                      \
     X(sqrt, 1)                                                                                     \
     X(floor, 1)                                                                                    \
-    X(abs, 1) X(copysign, 1) X(select, 1) X(is_finite, 1) X(from_int, 1) X(halves, 2)              \
-        X(half_masks, 1) X(half_min_max, 2)
+    X(abs, 1)                                                                                      \
+    X(copysign, 1) X(select, 1) X(is_finite, 1) X(from_int, 1) X(halves, 2) X(half_masks, 1)       \
+        X(half_min_max, 2)
 #define FL_WIDE_MATH_OPS(X)                                                                        \
     X(sincos, 2)                                                                                   \
     X(sincos_turns, 2)                                                                             \
@@ -36,8 +37,6 @@ typedef struct fl_wide_op {
     int results;
     fl_wide_run *run;
 } fl_wide_op;
-
-enum { WIDE_TABLE_STRATA = 12 };
 
 typedef struct fl_wide_table {
     uint32_t width;
@@ -55,9 +54,9 @@ typedef struct fl_wide_table {
 
     /** All four dimensions, n numbers each. */
     void (*sample)(float *out, const fl_sample_pass *pass, const uint32_t *pixel, size_t n);
-    /** Stratified: WIDE_TABLE_STRATA strata. */
-    void (*sample_pair)(float *out, fl_sampler kind, uint32_t seed, const uint32_t *pixel,
-                        const uint32_t *index, const uint32_t *path, uint32_t light, size_t n);
+    /** The two dimensions of a light, n numbers each. */
+    void (*sample_light)(float *out, const fl_sample_pass *pass, uint32_t light,
+                         const uint32_t *pixel, const uint32_t *path, size_t n);
     void (*path_child)(uint32_t *out, uint32_t seed, const uint32_t *path, uint32_t branch,
                        size_t n);
     void (*warp)(float *out, const fl_aperture *aperture, const float *u, const float *v, size_t n);
