@@ -15,9 +15,11 @@ enum {
 
 #define EXPONENT_PRIOR     0.60
 #define EXPONENT_MIN       0.50
-#define EXPONENT_MAX       0.75
-#define EXPONENT_FAST      0.70 /* Bracket of forecasts. */
+#define EXPONENT_MAX       1.50
+#define EXPONENT_PART      0.75 /* At most, within a doubling: nets must be whole. */
+#define EXPONENT_FAST      0.70 /* Bracket of forecasts; at least EXPONENT_MARGIN beyond p. */
 #define EXPONENT_SLOW      0.50
+#define EXPONENT_MARGIN    0.10
 #define RELATIVE_ERROR_MIN 0.20
 
 typedef struct level {
@@ -283,6 +285,18 @@ void fl_estimate_capture_round(fl_estimate *estimate, const fl_film *film, const
     estimate->round_pixels = 0;
 }
 
+/* RMSE from the sqrt(V) of so many doublings ago. */
+static double rmse_after(double root, double p, double doublings)
+{
+    return root * fl_d_exp2(0.5 - p - fl_min(p, EXPONENT_PART) * doublings);
+}
+
+double fl_estimate_pixel_square(const fl_estimate *estimate, uint32_t x, uint32_t y)
+{
+    FL_ASSERT(estimate->pixel_square);
+    return (double)estimate->pixel_square[(size_t)y * estimate->width + x];
+}
+
 void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_estimate *out_error)
 {
     *out_error = (fl_error_estimate){0};
@@ -295,7 +309,7 @@ void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_es
     double p = exponent_at(estimate, k), now = fl_max(samples, estimate->round_samples);
     double then = is_round ? estimate->round_samples : (double)(1u << k);
     double since = fl_d_log2(now) - fl_d_log2(then); /* Doublings since the snapshot. */
-    double rmse = sqrt(l->mean_square) * fl_d_exp2(0.5 - p - p * since);
+    double rmse = rmse_after(sqrt(l->mean_square), p, since);
     double relative = fl_max(RELATIVE_ERROR_MIN, 2.0 * l->standard_error);
     *out_error = (fl_error_estimate){
         .is_known = true,
@@ -321,8 +335,8 @@ double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t
     size_t count = (size_t)estimate->squares_x * estimate->squares_y;
     const double *sums = is_round ? estimate->round_sums : estimate->sums + k * count;
     double since = is_round ? 0.0 : fl_d_log2((double)samples) - (double)k;
-    return sqrt(sums[(size_t)sy * estimate->squares_x + sx] / (3.0 * pixels)) *
-           fl_d_exp2(0.5 - p - p * since);
+    double mean_square = sums[(size_t)sy * estimate->squares_x + sx] / (3.0 * pixels);
+    return rmse_after(sqrt(mean_square), p, since);
 }
 
 static double samples_at(const fl_error_estimate *error, double target_rmse, double p)
@@ -362,6 +376,12 @@ uint32_t fl_estimate_next_stop(const fl_estimate *estimate, uint32_t samples, do
     return low;
 }
 
+void fl_error_bracket(double p, double *out_slow, double *out_fast)
+{
+    *out_slow = fl_min(EXPONENT_SLOW, p);
+    *out_fast = fl_max(EXPONENT_FAST, p + EXPONENT_MARGIN);
+}
+
 bool fl_error_predict(const fl_error_estimate *error, double target_rmse,
                       fl_error_forecast *out_forecast)
 {
@@ -371,10 +391,11 @@ bool fl_error_predict(const fl_error_estimate *error, double target_rmse,
         *out_forecast = (fl_error_forecast){error->samples, error->samples, error->samples};
         return true;
     }
-    double samples = samples_at(error, target_rmse, error->exponent);
-    out_forecast->samples = samples;
-    out_forecast->low = fl_min(samples_at(error, target_rmse, EXPONENT_FAST), samples);
-    out_forecast->high = fl_max(samples_at(error, target_rmse, EXPONENT_SLOW), samples);
+    double slow, fast;
+    fl_error_bracket(error->exponent, &slow, &fast);
+    out_forecast->samples = samples_at(error, target_rmse, error->exponent);
+    out_forecast->low = samples_at(error, target_rmse, fast);
+    out_forecast->high = samples_at(error, target_rmse, slow);
     return true;
 }
 

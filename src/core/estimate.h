@@ -4,10 +4,11 @@
  *
  * Snapshot rule: at n = 2^k samples, V = mean over pixels and channels of (mean after n - mean
  * after n/2)^2 and RMSE = sqrt(V) 2^(0.5 - p), where the error falls like n^-p: p = 0.6, or
- * measured from V(n/4) and V(n) and clamped to [0.5, 0.75]. Between powers of two e(n) = e(2^k)
- * (2^k / n)^p. The interval is two standard errors by the spread of V over squares of 16 x 16
- * pixels, at least 20 % (the uncertainty of p). Low index bits make no usable classes for
- * low-discrepancy points, contiguous halves do: measured in docs/accuracy.md.
+ * measured from V(n/4) and V(n) and clamped to [0.5, 1.5], from independent samples to scrambled
+ * nets of something smooth (decision 056). Between powers of two e(n) = e(2^k) (2^k / n)^min(p,
+ * 0.75). The interval is two standard errors by the spread of V over squares of 16 x 16 pixels, at
+ * least 20 % (the uncertainty of p). Low index bits make no usable classes for low-discrepancy
+ * points, contiguous halves do: measured in docs/accuracy.md.
  *
  * The same numbers for any number of threads: a tile is captured when it has exactly 2^k samples,
  * and sums run in a fixed order.
@@ -29,8 +30,12 @@ typedef struct fl_error_estimate {
 /** Samples a pixel needs to reach a target. */
 typedef struct fl_error_forecast {
     double samples;   /**< With the estimate's own p. */
-    double low, high; /**< With p = 0.7 and p = 0.5, widened to contain `samples`. */
+    double low, high; /**< With the rates of fl_error_bracket. */
 } fl_error_forecast;
+
+/** Between which rates an error that falls like n^-p now may go on falling: from 0.5 to 0.7, and to
+ * 0.1 beyond p. */
+void fl_error_bracket(double p, double *out_slow, double *out_fast);
 
 /** Predict when the error will be `target_rmse` > 0: times seconds per sample, when in time. False:
  * the error is not known yet. Already reached: the present number. */
@@ -59,6 +64,10 @@ void fl_estimate_capture(fl_estimate *estimate, const fl_film *film, const fl_re
 void fl_estimate_capture_round(fl_estimate *estimate, const fl_film *film, const fl_rect *rect,
                                double mean_samples);
 
+/** Of adaptive sampling: the squared difference of the last capture at a pixel, as if it had
+ * doubled its samples; mean of the channels. */
+double fl_estimate_pixel_square(const fl_estimate *estimate, uint32_t x, uint32_t y);
+
 /** The estimate when every pixel has at least `samples` samples; after a round: that many in the
  * mean. */
 void fl_estimate_read(const fl_estimate *estimate, uint32_t samples, fl_error_estimate *out_error);
@@ -73,8 +82,8 @@ double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t
  */
 uint32_t fl_estimate_next_stop(const fl_estimate *estimate, uint32_t samples, double target_rmse);
 
-/** Snapshots and sums; reading takes an estimate that was just reset, of a film whose tiles stand as
- * in `schedule`. O(pixels). */
+/** Snapshots and sums; reading takes an estimate that was just reset, of a film whose tiles stand
+ * as in `schedule`. O(pixels). */
 void fl_estimate_pack(fl_estimate *estimate, const fl_schedule *schedule, fl_pack *pack);
 
 #endif

@@ -10,9 +10,8 @@
 
 enum { USES_COLUMNS = 44, TEXT_COLUMNS = 56 };
 
-/* Between which rates errors fall: of random samples, and of the best seen (core's estimate). */
+/* How the error of random samples falls: what is assumed before it is known. */
 #define RATE_SLOW 0.5
-#define RATE_FAST 0.7
 /* How far the plot looks ahead. */
 #define AHEAD 16.0
 /* Closer than this part of time and error to the present a mark would only hide it. */
@@ -252,8 +251,7 @@ static void trade_board(const vw_session *session, vw_board *board)
     board->has_plot = plot->count > 0;
     plot->has_forecast = error->is_known;
     plot->rate = error->exponent;
-    plot->slow = fl_min(RATE_SLOW, error->exponent);
-    plot->fast = fl_max(RATE_FAST, error->exponent);
+    fl_error_bracket(error->exponent, &plot->slow, &plot->fast);
     plot->end_x = AHEAD * here.seconds;
     put_forecast(session, board);
     if (!vw_insight_has(insight, VW_LAB_TRIALS) || answer->error[0]) {
