@@ -180,6 +180,15 @@ void fl_film_samples_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t c
             film->row_epoch[y] == film->epoch ? film->samples[(size_t)y * film->width + x + i] : 0;
 }
 
+void fl_film_valid_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count,
+                       uint32_t *out_valid)
+{
+    fl_film_samples_row(film, x, y, count, out_valid);
+    for (uint32_t i = 0; i < count; i++)
+        if (out_valid[i] > 0)
+            out_valid[i] -= film->invalid[(size_t)y * film->width + x + i];
+}
+
 void fl_film_mean(const fl_film *film, float *out_rgb)
 {
     for (uint32_t y = 0; y < film->height; y++)

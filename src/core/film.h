@@ -38,6 +38,10 @@ void fl_film_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count, fl
 void fl_film_samples_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count,
                          uint32_t *out_samples);
 
+/** How many of them are valid and so are in the sums. */
+void fl_film_valid_row(const fl_film *film, uint32_t x, uint32_t y, uint32_t count,
+                       uint32_t *out_valid);
+
 /** Mean of the whole film, top row first, 3 * width * height floats. */
 void fl_film_mean(const fl_film *film, float *out_rgb);
 
@@ -58,8 +62,8 @@ void fl_film_fill_holes(uint8_t *rgba, uint32_t width, uint32_t rows);
 uint32_t fl_film_complete_samples(const fl_film *film);
 uint64_t fl_film_covered_pixels(const fl_film *film);
 
-/** Sums, when every pixel has a sample. Reading replaces them and needs the sample counts, which are
- * not in the pack, from fl_film_set_samples first. O(pixels). */
+/** Sums, when every pixel has a sample. Reading replaces them and needs the sample counts, which
+ * are not in the pack, from fl_film_set_samples first. O(pixels). */
 void fl_film_pack(fl_film *film, fl_pack *pack);
 void fl_film_set_samples(fl_film *film, const fl_rect *rect, uint32_t samples);
 
