@@ -15,8 +15,28 @@ typedef struct tile {
 typedef struct cell {
     uint16_t x0, y0, x1, y1;
     uint32_t first_tile; /* Its tiles are [first_tile, first_tile of the next cell), centre-out. */
-    uint32_t units_left; /* Ranks not committed. */
+    uint32_t units_left; /* Of sample 0, not committed. */
 } cell;
+
+/* Ranks of sample 0 that go out together: those from first_rank to the next wave's are all pixels
+ * `step` apart. A cell is cut into parts * parts units of up to 1024 pixels. */
+typedef struct wave {
+    uint32_t first_rank, step, parts;
+} wave;
+
+enum { WAVES = 10 };
+
+static const wave waves[WAVES + 1] = {{0, 8, 1},
+                                      {1, 8, 1},
+                                      {2, 8, 1},
+                                      {3, 8, 1},
+                                      {4, 4, 1},
+                                      {8, 4, 1},
+                                      {12, 4, 1},
+                                      {16, 2, 2},
+                                      {32, 2, 2},
+                                      {48, 2, 2},
+                                      {FL_BAYER_RANKS, 1, 1}};
 
 struct fl_schedule {
     uint32_t width, height, cell_count, tile_count;
@@ -24,12 +44,12 @@ struct fl_schedule {
     tile *tiles;
     uint32_t *queue; /* Ring of the tiles that may go next, by samples, then first come. */
     uint32_t queue_head, queue_count;
-    uint32_t next_unit; /* Of sample 0: rank-major over cells. */
+    uint32_t next_wave, next_unit; /* Of sample 0. */
     uint32_t cap;
     uint32_t furthest;                       /* Most samples that any tile has or is getting. */
     uint32_t complete_samples, behind_count; /* Tiles with exactly complete_samples. */
-    uint32_t rank_units_left[FL_BAYER_RANKS];
-    uint32_t complete_ranks;
+    uint32_t wave_units_left[WAVES];
+    uint32_t complete_waves;
     uint64_t total_samples;
 };
 
@@ -168,56 +188,72 @@ void fl_schedule_destroy(fl_schedule *schedule)
     free(schedule);
 }
 
-/* The unit of one rank within a cell; false when the cell is too small to have that rank. */
-static bool rank_unit(const cell *c, uint32_t rank, fl_work *out_work)
+static uint32_t wave_units(const fl_schedule *schedule, uint32_t w)
 {
-    uint32_t x, y;
-    bayer_position(rank, &x, &y);
-    out_work->rect = (fl_rect){c->x0 + x, c->y0 + y, c->x1, c->y1};
-    out_work->step = 8;
-    out_work->sample = 0;
-    out_work->rank = rank;
-    return out_work->rect.x0 < c->x1 && out_work->rect.y0 < c->y1;
+    return schedule->cell_count * waves[w].parts * waves[w].parts;
+}
+
+/* Unit `unit` of a wave, cell by cell; false when the cell is too small to have it. */
+static bool wave_unit(const fl_schedule *schedule, uint32_t w, uint32_t unit, fl_work *out_work)
+{
+    uint32_t parts = waves[w].parts, side = FL_CELL_SIDE / parts, part = unit % (parts * parts);
+    uint32_t index = unit / (parts * parts), x, y;
+    const cell *c = &schedule->cells[index];
+    uint32_t x0 = c->x0 + part % parts * side, y0 = c->y0 + part / parts * side;
+    bayer_position(waves[w].first_rank, &x, &y);
+    *out_work = (fl_work){
+        .rect = {x0 + x, y0 + y, fl_min_u32(x0 + side, c->x1), fl_min_u32(y0 + side, c->y1)},
+        .step = waves[w].step,
+        .index = index,
+        .rank = waves[w].first_rank};
+    return out_work->rect.x0 < out_work->rect.x1 && out_work->rect.y0 < out_work->rect.y1;
 }
 
 /* Move past the units of sample 0 that have no pixels. */
 static void skip_empty_units(fl_schedule *schedule)
 {
     fl_work work;
-    while (schedule->next_unit < FL_BAYER_RANKS * schedule->cell_count &&
-           !rank_unit(&schedule->cells[schedule->next_unit % schedule->cell_count],
-                      schedule->next_unit / schedule->cell_count, &work))
-        schedule->next_unit++;
+    while (schedule->next_wave < WAVES) {
+        if (schedule->next_unit == wave_units(schedule, schedule->next_wave)) {
+            schedule->next_wave++;
+            schedule->next_unit = 0;
+        } else if (wave_unit(schedule, schedule->next_wave, schedule->next_unit, &work)) {
+            return;
+        } else {
+            schedule->next_unit++;
+        }
+    }
 }
 
-static void advance_ranks(fl_schedule *schedule)
+static void advance_waves(fl_schedule *schedule)
 {
-    while (schedule->complete_ranks < FL_BAYER_RANKS &&
-           schedule->rank_units_left[schedule->complete_ranks] == 0)
-        schedule->complete_ranks++;
+    while (schedule->complete_waves < WAVES &&
+           schedule->wave_units_left[schedule->complete_waves] == 0)
+        schedule->complete_waves++;
 }
 
 void fl_schedule_reset(fl_schedule *schedule)
 {
     for (uint32_t i = 0; i < schedule->tile_count; i++)
         schedule->tiles[i].samples = 0;
-    memset(schedule->rank_units_left, 0, sizeof schedule->rank_units_left);
-    for (uint32_t c = 0; c < schedule->cell_count; c++) {
+    for (uint32_t c = 0; c < schedule->cell_count; c++)
         schedule->cells[c].units_left = 0;
-        for (uint32_t rank = 0; rank < FL_BAYER_RANKS; rank++) {
+    for (uint32_t w = 0; w < WAVES; w++) {
+        schedule->wave_units_left[w] = 0;
+        for (uint32_t unit = 0; unit < wave_units(schedule, w); unit++) {
             fl_work work;
-            if (rank_unit(&schedule->cells[c], rank, &work)) {
-                schedule->cells[c].units_left++;
-                schedule->rank_units_left[rank]++;
+            if (wave_unit(schedule, w, unit, &work)) {
+                schedule->cells[work.index].units_left++;
+                schedule->wave_units_left[w]++;
             }
         }
     }
     schedule->queue_head = schedule->queue_count = 0;
-    schedule->next_unit = 0;
+    schedule->next_wave = schedule->next_unit = 0;
     schedule->furthest = 1;
     schedule->complete_samples = 0;
     schedule->behind_count = schedule->tile_count;
-    schedule->complete_ranks = 0;
+    schedule->complete_waves = 0;
     schedule->total_samples = 0;
     skip_empty_units(schedule);
 }
@@ -249,7 +285,7 @@ static void enqueue(fl_schedule *schedule, uint32_t index)
 
 static bool has_unit_of_sample_0(const fl_schedule *schedule)
 {
-    return schedule->next_unit < FL_BAYER_RANKS * schedule->cell_count;
+    return schedule->next_wave < WAVES;
 }
 
 static bool has_tile(const fl_schedule *schedule)
@@ -266,9 +302,7 @@ bool fl_schedule_has_work(const fl_schedule *schedule)
 bool fl_schedule_next(fl_schedule *schedule, fl_work *out_work)
 {
     if (has_unit_of_sample_0(schedule)) {
-        out_work->index = schedule->next_unit % schedule->cell_count;
-        rank_unit(&schedule->cells[out_work->index], schedule->next_unit / schedule->cell_count,
-                  out_work);
+        wave_unit(schedule, schedule->next_wave, schedule->next_unit, out_work);
         schedule->next_unit++;
         skip_empty_units(schedule);
         return true;
@@ -310,8 +344,11 @@ bool fl_schedule_commit(fl_schedule *schedule, const fl_work *work, fl_rect *out
         *out_rect = work->rect;
         return true;
     }
-    schedule->rank_units_left[work->rank]--;
-    advance_ranks(schedule);
+    uint32_t w = 0;
+    while (waves[w].first_rank != work->rank)
+        w++;
+    schedule->wave_units_left[w]--;
+    advance_waves(schedule);
     cell *c = &schedule->cells[work->index];
     FL_ASSERT(c->units_left > 0);
     if (--c->units_left > 0)
@@ -346,7 +383,7 @@ uint32_t fl_schedule_complete_samples(const fl_schedule *schedule)
 
 uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule)
 {
-    return schedule->complete_ranks;
+    return waves[schedule->complete_waves].first_rank;
 }
 
 uint64_t fl_schedule_total_samples(const fl_schedule *schedule)
@@ -396,9 +433,8 @@ static bool resume(fl_schedule *schedule)
     free(order);
     for (uint32_t c = 0; c < schedule->cell_count; c++)
         schedule->cells[c].units_left = 0;
-    memset(schedule->rank_units_left, 0, sizeof schedule->rank_units_left);
-    schedule->complete_ranks = FL_BAYER_RANKS;
-    schedule->next_unit = FL_BAYER_RANKS * schedule->cell_count;
+    memset(schedule->wave_units_left, 0, sizeof schedule->wave_units_left);
+    schedule->complete_waves = schedule->next_wave = WAVES;
     return true;
 }
 

@@ -4,10 +4,12 @@
  * it.
  *
  * Sample 0 is visited by Bayer rank over the whole picture: rank 0 is every 8th pixel in both
- * directions, 64 ranks make the full picture. A unit is one rank within a cell of 128 x 128 pixels,
- * so at most 256 pixels: rank 0 is soon complete and spread over all workers. Later samples go over
- * tiles of 32 x 32 pixels (16 x 16 in small pictures), 1024 pixels a unit. Cells and tiles go out
- * from the centre of the picture.
+ * directions, 64 ranks make the full picture. Units lie in cells of 128 x 128 pixels. Ranks 0 to 3
+ * go out one by one, 256 pixels a unit, so that rank 0 is soon complete and spread over all
+ * workers; then 4 at a time, every 4th pixel of a cell, and 16 at a time, every 2nd of a quarter
+ * cell: up to 1024 pixels that are near each other, as their rays then are (decision 050). Later
+ * samples go over tiles of 32 x 32 pixels (16 x 16 in small pictures), 1024 pixels a unit. Cells
+ * and tiles go out from the centre of the picture.
  *
  * A tile takes part in at most one unit at a time, and only when all its earlier samples are
  * committed; among those the tile with the fewest samples goes first. There is no barrier between
@@ -35,7 +37,7 @@ typedef struct fl_work {
     fl_rect rect;
     uint32_t step, sample;
     uint32_t index; /**< Of the cell (sample 0) or the tile. */
-    uint32_t rank;  /**< Sample 0 only. */
+    uint32_t rank;  /**< Sample 0 only: the first of the unit's ranks. */
 } fl_work;
 
 typedef struct fl_schedule fl_schedule;
@@ -70,7 +72,7 @@ uint32_t fl_work_pixels(const fl_work *work, uint32_t x0, uint32_t y0, uint16_t 
 
 /** Samples every pixel has. */
 uint32_t fl_schedule_complete_samples(const fl_schedule *schedule);
-/** Bayer ranks 0 ... that are complete in the whole picture, 0 to 64. */
+/** Bayer ranks 0 ... that are complete in the whole picture, 0 to 64; 4 and then 16 more at once. */
 uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule);
 /** Samples committed, all pixels together. */
 uint64_t fl_schedule_total_samples(const fl_schedule *schedule);
