@@ -268,6 +268,36 @@ static bool gather_entries(fl_compiler *c)
     return ok;
 }
 
+/* The boxes of the bounded entries; sets entry_origin_pad. */
+static void measure_entries(fl_geometry *g, fl_bvh_box *out_boxes)
+{
+    double gain = 1.0;
+    for (uint32_t k = 0; k < g->bounded_entry_count; k++) {
+        entry_box b = bounds_of(g, &g->entries[k]);
+        out_boxes[k] = b.box;
+        gain = fl_max(b.gain, gain);
+    }
+    g->entry_origin_pad = (float)(entry_roundings * FL_EPSILON * gain);
+}
+
+static bool lay_out_boxes(fl_compiler *c)
+{
+    fl_geometry *g = c->geometry;
+    fl_bvh_box boxes[FL_OBJECT_BVH_MIN];
+    size_t groups = (g->bounded_entry_count + 7) / 8;
+    g->entry_boxes = fl_arena_alloc(&c->out->arena, groups, sizeof *g->entry_boxes);
+    if (!g->entry_boxes)
+        return fl_out_of_memory(c->diags, "the boxes of objects");
+    measure_entries(g, boxes);
+    for (uint32_t k = 0; k < g->bounded_entry_count; k++)
+        for (int a = 0; a < 3; a++) {
+            g->entry_boxes[k / 8].lo[a][k % 8] = boxes[k].lo[a];
+            g->entry_boxes[k / 8].hi[a][k % 8] = boxes[k].hi[a];
+        }
+    c->out->accel_bytes += groups * sizeof *g->entry_boxes;
+    return true;
+}
+
 static bool build_object_bvh(fl_compiler *c)
 {
     fl_geometry *g = c->geometry;
@@ -275,15 +305,10 @@ static bool build_object_bvh(fl_compiler *c)
     fl_bvh_box *boxes = fl_arena_alloc(&scratch, g->bounded_entry_count, sizeof *boxes);
     g->object_bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *g->object_bvh);
     bool ok = boxes && g->object_bvh;
-    double gain = 1.0;
-    for (uint32_t k = 0; ok && k < g->bounded_entry_count; k++) {
-        entry_box b = bounds_of(g, &g->entries[k]);
-        boxes[k] = b.box;
-        gain = fl_max(b.gain, gain);
-    }
-    const fl_bvh_input input = {.boxes = boxes,
-                                .count = g->bounded_entry_count,
-                                .origin_pad = (float)(entry_roundings * FL_EPSILON * gain)};
+    if (ok)
+        measure_entries(g, boxes);
+    const fl_bvh_input input = {
+        .boxes = boxes, .count = g->bounded_entry_count, .origin_pad = g->entry_origin_pad};
     ok = ok && fl_bvh_build(g->object_bvh, &input, &c->out->arena, &c->out->arena, c->pool);
     fl_arena_deinit(&scratch);
     if (!ok || !gather_entries(c))
@@ -318,7 +343,7 @@ bool fl_compile_entries(fl_compiler *c)
         if (g->instances[k].kind == FL_OBJECT_PLANE)
             g->entries[count++] = (fl_entry){true, g->instances[k].kind, k};
     g->entry_count = count;
-    if (c->options->accel != FL_ACCEL_BVH || g->bounded_entry_count <= FL_OBJECT_BVH_MIN)
+    if (c->options->accel != FL_ACCEL_BVH || g->bounded_entry_count <= FL_ENTRY_BOXES_MIN)
         return true;
-    return build_object_bvh(c);
+    return g->bounded_entry_count > FL_OBJECT_BVH_MIN ? build_object_bvh(c) : lay_out_boxes(c);
 }

@@ -123,7 +123,15 @@ typedef struct fl_entry {
     uint32_t index;      /**< Into instances, or into the array of its kind. */
 } fl_entry;
 
-enum { FL_OBJECT_BVH_MIN = 32 };
+/** Boxes of 8 entries, for one test by what a whole chunk of rays may reach. */
+typedef struct fl_entry_boxes {
+    float lo[3][8], hi[3][8];
+} fl_entry_boxes;
+
+/** With more entries than FL_OBJECT_BVH_MIN there is a hierarchy; with more than
+ * FL_ENTRY_BOXES_MIN, boxes; with fewer nothing but the loop, for which a test would cost more than
+ * it spares. */
+enum { FL_ENTRY_BOXES_MIN = 3, FL_OBJECT_BVH_MIN = 64 };
 
 typedef struct fl_geometry {
     fl_vec3 origin; /**< World position of this space's zero. */
@@ -146,6 +154,9 @@ typedef struct fl_geometry {
     uint32_t entry_count, bounded_entry_count;
     fl_bvh *object_bvh;       /**< With FL_ACCEL_BVH, over the bounded entries when there are more than
                                    FL_OBJECT_BVH_MIN; items are entries. Else NULL. */
+    fl_entry_boxes *entry_boxes; /**< With FL_ACCEL_BVH, of the bounded entries when there are not so many but more
+                                      than FL_ENTRY_BOXES_MIN. Else NULL. */
+    float entry_origin_pad;      /**< Origins are widened by this times their largest coordinate, for either. */
 } fl_geometry;
 
 #endif

@@ -4,6 +4,7 @@
  * (wide.h).
  */
 #include "core/kernel_isect_octree.h"
+#include "core/kernel_isect_shaft.h"
 #include "core/kernel_isect_shapes.h"
 #include "core/kernel_isect_stream.h"
 #include "core/kernel_resolve.h"
@@ -165,9 +166,10 @@ FL_INLINE void meet_baked(const job *j, chunk *c, uint32_t i, const bundle *b, f
     chunk_accept(c, i, t, object, is_any);
 }
 
-/* All baked objects of one kind, one after the other. */
+/* Baked objects of one kind, one after the other: numbers which[0], which[1] ..., NULL for all. */
 FL_INLINE void meet_all_baked(const job *j, chunk *c, uint32_t i, const bundle *b,
-                              fl_object_kind kind, uint32_t count, const bool is_any)
+                              fl_object_kind kind, const uint32_t *which, uint32_t count,
+                              const bool is_any)
 {
     fl_isect_counts *counts = &j->context->counts;
     for (uint32_t k = 0; k < count; k++) {
@@ -176,7 +178,7 @@ FL_INLINE void meet_all_baked(const job *j, chunk *c, uint32_t i, const bundle *
             return;
         if (kind != FL_OBJECT_REVOLUTION)
             counts->primitive_tests += lane_count(alive);
-        meet_baked(j, c, i, b, kind, k, is_any);
+        meet_baked(j, c, i, b, kind, which ? which[k] : k, is_any);
     }
 }
 
@@ -249,27 +251,56 @@ FL_INLINE void walk_objects(const job *j, chunk *c, const bool is_any)
 
 /* --- Whole chunks ---------------------------------------------------------------------------- */
 
+FL_INLINE uint64_t chunk_all(const chunk *c)
+{
+    return c->count == CHUNK_RAYS ? ~(uint64_t)0 : ((uint64_t)1 << c->count) - 1;
+}
+
+/* A scene of some objects: those near the chunk. */
+FL_INLINE void meet_nearby(const job *j, chunk *c, const bool is_any)
+{
+    const fl_geometry *g = j->geometry;
+    nearby n;
+    find_nearby(g, c, &n);
+    for (uint32_t i = 0; i < c->count; i += FL_W) {
+        bundle b = bundle_load(c, i);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_PLANE, NULL, g->planes.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SPHERE, n.index, n.spheres, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SQUARE, n.index + n.spheres, n.squares - n.spheres,
+                       is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_REVOLUTION, n.index + n.squares,
+                       n.revolutions - n.squares, is_any);
+    }
+    for (uint32_t k = n.revolutions; k < n.count; k++)
+        meet_instance(j, c, chunk_all(c), &g->instances[n.index[k]], is_any);
+    for (uint32_t k = g->bounded_entry_count; k < g->entry_count; k++)
+        meet_instance(j, c, chunk_all(c), &g->instances[g->entries[k].index], is_any);
+}
+
 FL_INLINE void meet_geometry(const job *j, chunk *c, const bool is_any)
 {
     const fl_geometry *g = j->geometry;
+    if (g->entry_boxes) {
+        meet_nearby(j, c, is_any);
+        return;
+    }
     for (uint32_t i = 0; i < c->count; i += FL_W) {
         if (!fl_wm_any(chunk_alive(c, i)))
             continue;
         bundle b = bundle_load(c, i);
-        meet_all_baked(j, c, i, &b, FL_OBJECT_PLANE, g->planes.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_PLANE, NULL, g->planes.baked_count, is_any);
         if (g->object_bvh)
             continue;
-        meet_all_baked(j, c, i, &b, FL_OBJECT_SPHERE, g->spheres.baked_count, is_any);
-        meet_all_baked(j, c, i, &b, FL_OBJECT_SQUARE, g->patches.baked_count, is_any);
-        meet_all_baked(j, c, i, &b, FL_OBJECT_REVOLUTION, g->revolutions.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SPHERE, NULL, g->spheres.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_SQUARE, NULL, g->patches.baked_count, is_any);
+        meet_all_baked(j, c, i, &b, FL_OBJECT_REVOLUTION, NULL, g->revolutions.baked_count, is_any);
     }
-    uint64_t all = c->count == CHUNK_RAYS ? ~(uint64_t)0 : ((uint64_t)1 << c->count) - 1;
     if (g->object_bvh)
         walk_objects(j, c, is_any);
     /* With a hierarchy, only what has no bounds is left. */
     for (uint32_t k = g->object_bvh ? g->bounded_entry_count : 0; k < g->entry_count; k++)
         if (g->entries[k].is_instance)
-            meet_instance(j, c, all, &g->instances[g->entries[k].index], is_any);
+            meet_instance(j, c, chunk_all(c), &g->instances[g->entries[k].index], is_any);
 }
 
 FL_INLINE chunk chunk_of(const fl_rays *rays, uint32_t first, float *t, uint32_t *object,

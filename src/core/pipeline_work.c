@@ -254,9 +254,12 @@ uint32_t fl_branches_settle(fl_branches *branches)
 void fl_rays_pad(fl_rays *rays)
 {
     for (uint32_t i = rays->count; i % 8 != 0; i++) {
-        rays->ox[i] = rays->oy[i] = rays->oz[i] = 0.0f;
-        rays->dx[i] = rays->dy[i] = 0.0f;
-        rays->dz[i] = 1.0f;
+        rays->ox[i] = rays->ox[i - 1];
+        rays->oy[i] = rays->oy[i - 1];
+        rays->oz[i] = rays->oz[i - 1];
+        rays->dx[i] = rays->dx[i - 1];
+        rays->dy[i] = rays->dy[i - 1];
+        rays->dz[i] = rays->dz[i - 1];
         rays->t_max[i] = -1.0f;
         rays->source_object[i] = rays->source_prim[i] = FL_NONE;
     }

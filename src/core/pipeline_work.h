@@ -83,7 +83,8 @@ static inline void fl_pipe_lap(fl_pipe *pipe, fl_cost cost)
     pipe->lap = now;
 }
 
-/** Fill what lies between count and the next multiple of 8 with rays that hit nothing. */
+/** Fill what lies between count and the next multiple of 8 with rays that hit nothing, like the last
+ * one otherwise, so that they reach no further than the others. */
 void fl_rays_pad(fl_rays *rays);
 /** The same for hits: nothing was hit. */
 void fl_hits_pad(fl_hits *hits, uint32_t count);

@@ -139,6 +139,25 @@ FL_INLINE fl_wd fl_wd_copysign(fl_wd a, fl_wd s)
     return (fl_wd)(((fl_wl)a & INT64_MAX) | ((fl_wl)s & INT64_MIN));
 }
 
+/** Least and greatest of the lanes, none of them NaN. */
+FL_INLINE float fl_wf_least(fl_wf v)
+{
+#if FL_W == 8
+    v = fl_wf_min(v, __builtin_shufflevector(v, v, 4, 5, 6, 7, 0, 1, 2, 3));
+    v = fl_wf_min(v, __builtin_shufflevector(v, v, 2, 3, 0, 1, 6, 7, 4, 5));
+    v = fl_wf_min(v, __builtin_shufflevector(v, v, 1, 0, 3, 2, 5, 4, 7, 6));
+#elif FL_W == 4
+    v = fl_wf_min(v, __builtin_shufflevector(v, v, 2, 3, 0, 1));
+    v = fl_wf_min(v, __builtin_shufflevector(v, v, 1, 0, 3, 2));
+#endif
+    return v[0];
+}
+
+FL_INLINE float fl_wf_most(fl_wf v)
+{
+    return -fl_wf_least(-v);
+}
+
 /** Neither infinite nor NaN. */
 FL_INLINE fl_wm fl_wf_is_finite(fl_wf a)
 {

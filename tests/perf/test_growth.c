@@ -62,7 +62,7 @@ static void lights_cost_their_number(void **state)
     double ratio = (many.rays_per_pixel - 1.0) / (few.rays_per_pixel - 1.0);
     print_message("tenfold lights: %.2f times the shadow rays\n", ratio);
     assert_true(ratio > 9.5 && ratio < 10.5);
-    assert_true(many.node_visits < few.node_visits * 1.1);
+    assert_true(many.node_visits <= few.node_visits * 1.1); /* So few spheres have no nodes. */
     assert_true(many.primitive_tests < few.primitive_tests * 1.1);
 }
 
