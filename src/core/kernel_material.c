@@ -104,7 +104,6 @@ static void read_texels(const fl_texture *texture, const spots *s, uint32_t begi
 {
     const fl_image *image = texture->image;
     float *channel[3] = {out.x, out.y, out.z};
-    const fl_wl all = (fl_wl)(fl_wd_set(0.0) == 0.0);
     for (uint32_t i = begin; i < end; i += FL_WD) {
         fl_wd a[3], b[3], c[3], d[3];
         gather_texels(image, s->column[0] + i, s->row[0] + i, end - i, a);
@@ -120,7 +119,7 @@ static void read_texels(const fl_texture *texture, const spots *s, uint32_t begi
             }
         }
         for (int k = 0; k < 3; k++)
-            fl_wd_store_floats(channel[k] + i, a[k], all);
+            fl_wd_store_floats(channel[k] + i, a[k]);
     }
 }
 

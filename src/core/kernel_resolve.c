@@ -10,23 +10,25 @@
  */
 #define ALONG_AXIS 1e-6
 
-FL_INLINE vec gather_vec(const fl_vec3 *from, const uint32_t entry[FL_WD])
+/* from[entry] of each lane: mostly one for all. */
+FL_INLINE fl_wd gather(const double *from, const block *b)
 {
-    double x[FL_WD], y[FL_WD], z[FL_WD];
-    for (int l = 0; l < FL_WD; l++) {
-        x[l] = from[entry[l]].x;
-        y[l] = from[entry[l]].y;
-        z[l] = from[entry[l]].z;
-    }
-    return (vec){fl_wd_load(x), fl_wd_load(y), fl_wd_load(z)};
+    fl_wd v = fl_wd_set(from[b->entry[0]]);
+    for (int l = 1; l < FL_WD && !b->has_one_entry; l++)
+        v[l] = from[b->entry[l]];
+    return v;
 }
 
-FL_INLINE fl_wd gather(const double *from, const uint32_t entry[FL_WD])
+FL_INLINE vec gather_vec(const fl_vec3 *from, const block *b)
 {
-    double v[FL_WD];
-    for (int l = 0; l < FL_WD; l++)
-        v[l] = from[entry[l]];
-    return fl_wd_load(v);
+    const fl_vec3 *first = &from[b->entry[0]];
+    vec v = {fl_wd_set(first->x), fl_wd_set(first->y), fl_wd_set(first->z)};
+    for (int l = 1; l < FL_WD && !b->has_one_entry; l++) {
+        v.x[l] = from[b->entry[l]].x;
+        v.y[l] = from[b->entry[l]].y;
+        v.z[l] = from[b->entry[l]].z;
+    }
+    return v;
 }
 
 /* The quotient t, or what the float test said where there is none. */
@@ -40,8 +42,8 @@ FL_INLINE fl_wd or_tested(fl_wd t, const block *b)
 FL_INLINE void solve_spheres(const run *r, const block *b, solution *s)
 {
     const fl_spheres *spheres = &r->geometry->spheres;
-    vec c = gather_vec(spheres->center, b->entry), f = vec_sub(b->o, c);
-    fl_wd radius = gather(spheres->radius, b->entry), zero = fl_wd_set(0.0);
+    vec c = gather_vec(spheres->center, b), f = vec_sub(b->o, c);
+    fl_wd radius = gather(spheres->radius, b), zero = fl_wd_set(0.0);
     fl_wd a = vec_dot(b->d, b->d), half = -vec_dot(f, b->d);
     vec l = vec_mad(f, b->d, half / a);
     fl_wd rest = fl_wd_max(radius * radius - vec_dot(l, l), zero);
@@ -78,8 +80,8 @@ FL_INLINE void plane_uv(const run *r, vec n, solution *s)
 FL_INLINE void solve_planes(const run *r, const block *b, solution *s)
 {
     const fl_planes *planes = &r->geometry->planes;
-    vec n = gather_vec(planes->normal, b->entry);
-    fl_wd offset = gather(planes->offset, b->entry);
+    vec n = gather_vec(planes->normal, b);
+    fl_wd offset = gather(planes->offset, b);
     fl_wd t = (offset - vec_dot(n, b->o)) / vec_dot(n, b->d);
     vec p = vec_mad(b->o, b->d, or_tested(t, b));
     s->p = vec_mad(p, n, offset - vec_dot(n, p));
@@ -91,7 +93,7 @@ FL_INLINE void solve_planes(const run *r, const block *b, solution *s)
 FL_INLINE void solve_patches(const run *r, const block *b, solution *s)
 {
     const fl_patches *patches = &r->geometry->patches;
-    vec n = gather_vec(patches->normal, b->entry), c = gather_vec(patches->corner, b->entry);
+    vec n = gather_vec(patches->normal, b), c = gather_vec(patches->corner, b);
     vec f = vec_sub(b->o, c);
     fl_wd t = -vec_dot(n, f) / vec_dot(n, b->d);
     f = vec_mad(f, b->d, or_tested(t, b));
@@ -101,12 +103,11 @@ FL_INLINE void solve_patches(const run *r, const block *b, solution *s)
     s->size = vec_max_abs(c) + vec_max_abs(f);
     if (r->needs_uv) {
         fl_wd zero = fl_wd_set(0.0), one = fl_wd_set(1.0);
-        int64_t disk[FL_WD];
+        fl_wl is_disk;
         for (int l = 0; l < FL_WD; l++)
-            disk[l] = -(int64_t)patches->is_disk[b->entry[l]];
-        fl_wl is_disk = fl_wl_load(disk);
-        s->u = vec_dot(f, gather_vec(patches->dual_u, b->entry));
-        s->v = vec_dot(f, gather_vec(patches->dual_v, b->entry));
+            is_disk[l] = -(int64_t)patches->is_disk[b->entry[l]];
+        s->u = vec_dot(f, gather_vec(patches->dual_u, b));
+        s->v = vec_dot(f, gather_vec(patches->dual_v, b));
         s->u = fl_wd_select(is_disk, 0.5 * (s->u + 1.0), s->u);
         s->v = fl_wd_select(is_disk, 0.5 * (s->v + 1.0), s->v);
         s->u = fl_wd_min(fl_wd_max(s->u, zero), one);
@@ -180,8 +181,7 @@ FL_INLINE void solve_revolutions(const run *r, const fl_rays *rays, const fl_hit
     s->p = vec_mad(b->o, b->d, b->t);
     s->ng = vec_scale(back, fl_wd_set(-1.0));
     for (int l = 0; l < FL_WD; l++)
-        if (b->lanes[l])
-            solve_revolution(r, rays, hits, b->at + (uint32_t)l, b->entry[l], l, s);
+        solve_revolution(r, rays, hits, b->at[l], b->entry[l], l, s);
     s->ns = s->ng;
 }
 
@@ -212,31 +212,31 @@ FL_INLINE vec affine_normal(const fl_affine *a, vec n)
                           m[0][2] * n.x + m[1][2] * n.y + m[2][2] * n.z});
 }
 
-/* Rays at..at + FL_WD - 1 in the space of their winners. Lanes of other runs pretend to be of this
- * one. */
-FL_INLINE block block_load(const run *r, const fl_rays *rays, const fl_hits *hits, uint32_t at)
+FL_INLINE fl_wd load(const float *from, const block *b)
 {
-    block b = {.at = at};
-    b.o = (vec){fl_wd_load_floats(rays->ox + at), fl_wd_load_floats(rays->oy + at),
-                fl_wd_load_floats(rays->oz + at)};
-    b.d = (vec){fl_wd_load_floats(rays->dx + at), fl_wd_load_floats(rays->dy + at),
-                fl_wd_load_floats(rays->dz + at)};
-    b.t = fl_wd_load_floats(hits->t + at);
-    int64_t lanes[FL_WD];
-    for (int l = 0; l < FL_WD; l++) {
-        uint32_t i = at + (uint32_t)l;
-        bool is_in = i >= r->begin && i < r->end;
-        uint32_t from = is_in ? i : r->begin;
-        lanes[l] = is_in ? -1 : 0;
-        b.entry[l] = r->geometry->object_entry[hits->object[from]];
-        b.prim[l] = hits->prim[from];
+    return b->is_dense ? fl_wd_load_floats(from + b->at[0]) : fl_wd_gather_floats(from, b->at);
+}
+
+/* Rays first, first + 1, ... of the run in the space of their winners. */
+FL_INLINE void block_load(const run *r, const fl_rays *rays, const fl_hits *hits, uint32_t first,
+                          block *out)
+{
+    out->is_dense = out->has_one_entry = true;
+    for (uint32_t l = 0; l < FL_WD; l++) {
+        uint32_t at = r->ray[fl_min_u32(first + l, r->count - 1)];
+        out->at[l] = at;
+        out->entry[l] = r->geometry->object_entry[hits->object[at]];
+        out->prim[l] = hits->prim[at];
+        out->is_dense &= at == out->at[0] + l;
+        out->has_one_entry &= out->entry[l] == out->entry[0];
     }
-    b.lanes = fl_wl_load(lanes);
+    out->o = (vec){load(rays->ox, out), load(rays->oy, out), load(rays->oz, out)};
+    out->d = (vec){load(rays->dx, out), load(rays->dy, out), load(rays->dz, out)};
+    out->t = load(hits->t, out);
     if (r->instance && !r->instance->is_identity) {
-        b.o = affine_point(&r->instance->to_object_exact, b.o);
-        b.d = affine_direction(&r->instance->to_object_exact, b.d);
+        out->o = affine_point(&r->instance->to_object_exact, out->o);
+        out->d = affine_direction(&r->instance->to_object_exact, out->d);
     }
-    return b;
 }
 
 /* Back to world space; returns the error bound in world units. */
@@ -259,11 +259,19 @@ FL_INLINE fl_wd to_world(const run *r, solution *s)
     return fl_wd_max(bound, fl_wd_set(1e-30));
 }
 
+FL_INLINE void store_one(float *to, fl_wd v, const block *b)
+{
+    if (b->is_dense)
+        fl_wd_store_floats(to + b->at[0], v);
+    else
+        fl_wd_scatter_floats(to, b->at, v);
+}
+
 FL_INLINE void store_vec(float *x, float *y, float *z, vec v, const block *b)
 {
-    fl_wd_store_floats(x + b->at, v.x, b->lanes);
-    fl_wd_store_floats(y + b->at, v.y, b->lanes);
-    fl_wd_store_floats(z + b->at, v.z, b->lanes);
+    store_one(x, v.x, b);
+    store_one(y, v.y, b);
+    store_one(z, v.z, b);
 }
 
 FL_INLINE void store(fl_surface *out, const block *b, const solution *s, fl_wd offset)
@@ -271,16 +279,19 @@ FL_INLINE void store(fl_surface *out, const block *b, const solution *s, fl_wd o
     store_vec(out->px, out->py, out->pz, s->p, b);
     store_vec(out->ngx, out->ngy, out->ngz, s->ng, b);
     store_vec(out->nsx, out->nsy, out->nsz, s->ns, b);
-    fl_wd_store_floats(out->offset + b->at, offset, b->lanes);
-    fl_wd_store_floats(out->u + b->at, s->u, b->lanes);
-    fl_wd_store_floats(out->v + b->at, s->v, b->lanes);
+    store_one(out->offset, offset, b);
+    store_one(out->u, s->u, b);
+    store_one(out->v, s->v, b);
 }
 
 FL_INLINE void solve_block(const run *r, fl_object_kind kind, const fl_rays *rays,
-                           const fl_hits *hits, uint32_t at, fl_surface *out)
+                           const fl_hits *hits, uint32_t first, fl_surface *out)
 {
-    block b = block_load(r, rays, hits, at);
-    solution s = {.roundings = OFFSET_ROUNDINGS};
+    block b;
+    solution s; /* No initialiser: p and the normals are always set. */
+    block_load(r, rays, hits, first, &b);
+    s.u = s.v = s.size = fl_wd_set(0.0);
+    s.roundings = OFFSET_ROUNDINGS;
     if (kind == FL_OBJECT_SPHERE)
         solve_spheres(r, &b, &s);
     else if (kind == FL_OBJECT_PLANE)
@@ -299,8 +310,8 @@ FL_INLINE void solve_block(const run *r, fl_object_kind kind, const fl_rays *ray
 #define SOLVE_RUN(name, kind)                                                                      \
     static void name(const run *r, const fl_rays *rays, const fl_hits *hits, fl_surface *out)      \
     {                                                                                              \
-        for (uint32_t at = r->begin / FL_WD * FL_WD; at < r->end; at += FL_WD)                     \
-            solve_block(r, kind, rays, hits, at, out);                                             \
+        for (uint32_t first = 0; first < r->count; first += FL_WD)                                 \
+            solve_block(r, kind, rays, hits, first, out);                                          \
     }
 SOLVE_RUN(run_of_spheres, FL_OBJECT_SPHERE)
 SOLVE_RUN(run_of_planes, FL_OBJECT_PLANE)
@@ -356,33 +367,73 @@ FL_INLINE run_key key_of(const fl_geometry *g, const uint8_t *needs_uv, uint32_t
                      needs_uv && needs_uv[object]};
 }
 
+/* A part of the stream, and the rays in it that are solved alike. */
+enum { WINDOW_RAYS = 256, WINDOW_KEYS = 16 };
+
+typedef struct window {
+    run_key key[WINDOW_KEYS];
+    uint32_t key_count, count[WINDOW_KEYS];
+    uint32_t ray[WINDOW_KEYS][WINDOW_RAYS];
+} window;
+
+/* The place of a key; WINDOW_KEYS when there is no room for another. */
+FL_INLINE uint32_t window_find(window *w, run_key key)
+{
+    uint32_t k = 0;
+    while (k < w->key_count && (w->key[k].kind != key.kind || w->key[k].instance != key.instance ||
+                                w->key[k].needs_uv != key.needs_uv))
+        k++;
+    if (k == w->key_count && k < WINDOW_KEYS) {
+        w->key[k] = key;
+        w->count[k] = 0;
+        w->key_count++;
+    }
+    return k;
+}
+
+/* Sort hits from `begin` on by what is solved alike; returns the end of the window. */
+static uint32_t window_fill(window *w, const fl_geometry *geometry, const uint8_t *needs_uv,
+                            const uint32_t *object, uint32_t begin, uint32_t count)
+{
+    uint32_t end = fl_min_u32(count, begin + WINDOW_RAYS);
+    w->key_count = 0;
+    for (uint32_t i = begin; i < end;) {
+        uint32_t same = object[i];
+        if (same == FL_NONE) {
+            i++;
+            continue;
+        }
+        uint32_t k = window_find(w, key_of(geometry, needs_uv, same));
+        if (k == WINDOW_KEYS)
+            return i;
+        uint32_t n = w->count[k];
+        while (i < end && object[i] == same)
+            w->ray[k][n++] = i++;
+        w->count[k] = n;
+    }
+    return end;
+}
+
 void FL_ISA_NAME(fl_resolve)(const fl_geometry *geometry, const fl_rays *rays, const fl_hits *hits,
                              const uint8_t *needs_uv, fl_surface *out_surface,
                              fl_isect_context *context)
 {
-    const uint32_t *object = hits->object, count = rays->count;
+    window w;
     run r = {.geometry = geometry, .context = context};
-    for (; r.begin < count; r.begin = r.end) {
+    for (uint32_t begin = 0, end; begin < rays->count; begin = end) {
         if (fl_is_cancelled(context))
             return;
-        r.end = r.begin + 1;
-        if (object[r.begin] == FL_NONE) {
-            store_miss(out_surface, r.begin);
-            continue;
+        end = window_fill(&w, geometry, needs_uv, hits->object, begin, rays->count);
+        for (uint32_t i = begin; i < end; i++)
+            if (hits->object[i] == FL_NONE)
+                store_miss(out_surface, i);
+        for (uint32_t k = 0; k < w.key_count; k++) {
+            uint32_t instance = w.key[k].instance;
+            r.instance = instance == FL_NONE ? NULL : &geometry->instances[instance];
+            r.needs_uv = w.key[k].needs_uv;
+            r.ray = w.ray[k];
+            r.count = w.count[k];
+            solve_run(&r, w.key[k].kind, rays, hits, out_surface);
         }
-        run_key key = key_of(geometry, needs_uv, object[r.begin]);
-        for (; r.end < count && r.end % 64 != 0; r.end++) {
-            if (object[r.end] == object[r.end - 1])
-                continue;
-            if (object[r.end] == FL_NONE)
-                break;
-            run_key next = key_of(geometry, needs_uv, object[r.end]);
-            if (next.kind != key.kind || next.instance != key.instance ||
-                next.needs_uv != key.needs_uv)
-                break;
-        }
-        r.instance = key.instance == FL_NONE ? NULL : &geometry->instances[key.instance];
-        r.needs_uv = key.needs_uv;
-        solve_run(&r, key.kind, rays, hits, out_surface);
     }
 }

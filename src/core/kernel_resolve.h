@@ -2,7 +2,7 @@
  *
  * Layer 4: the winners of a search, solved again in double, FL_WD rays at a time. One source for
  * all instruction sets; the arithmetic of a ray does not depend on its neighbours, so the same bits
- * from each. Cost: least where neighbours in the stream met the same kind of object.
+ * from each. Rays near each other in the stream that met the same kind of object go together.
  */
 #ifndef FL_KERNEL_RESOLVE_H
 #define FL_KERNEL_RESOLVE_H

@@ -18,21 +18,23 @@ typedef struct vec {
     fl_wd x, y, z;
 } vec;
 
-/** Neighbours in the stream whose winners are solved alike. */
+/** Rays of the stream whose winners are solved alike, wherever they stand in it. */
 typedef struct run {
     const fl_geometry *geometry;
     fl_isect_context *context;
     const fl_instance *instance; /**< NULL: baked. */
-    uint32_t begin, end;
+    const uint32_t *ray;         /**< Ascending. */
+    uint32_t count;
     bool needs_uv;
 } run;
 
 /** FL_WD rays, everything in the space of the winner. */
 typedef struct block {
-    uint32_t at;
-    fl_wl lanes; /**< Those of the run. */
-    vec o, d;    /**< Exactly transformed. */
-    fl_wd t;     /**< As the float test found it. */
+    uint32_t at[FL_WD]; /**< In the stream; what is missing at the end of a run repeats its last. */
+    bool is_dense;      /**< at[] are neighbours. */
+    bool has_one_entry;
+    vec o, d; /**< Exactly transformed. */
+    fl_wd t;  /**< As the float test found it. */
     uint32_t entry[FL_WD], prim[FL_WD];
 } block;
 
@@ -85,10 +87,7 @@ FL_INLINE vec vec_select(fl_wl m, vec a, vec b)
 
 FL_INLINE bool is_any(fl_wl m)
 {
-    int64_t all = 0;
-    for (int l = 0; l < FL_WD; l++)
-        all |= m[l];
-    return all != 0;
+    return fl_wl_bits(m) != 0;
 }
 
 /** Unit vectors; where the squares of lengths leave the range of doubles, with care. 0 stays 0. */
@@ -113,14 +112,11 @@ FL_INLINE void gather_corners(const float *xyz, const uint32_t *index, const uin
                               vec out[3])
 {
     for (int k = 0; k < 3; k++) {
-        float x[FL_WD], y[FL_WD], z[FL_WD];
-        for (int l = 0; l < FL_WD; l++) {
-            const float *p = xyz + 3 * (size_t)index[3 * (size_t)face[l] + (size_t)k];
-            x[l] = p[0];
-            y[l] = p[1];
-            z[l] = p[2];
-        }
-        out[k] = (vec){fl_wd_load_floats(x), fl_wd_load_floats(y), fl_wd_load_floats(z)};
+        uint32_t at[FL_WD];
+        for (int l = 0; l < FL_WD; l++)
+            at[l] = 3 * index[3 * (size_t)face[l] + (size_t)k];
+        out[k] = (vec){fl_wd_gather_floats(xyz, at), fl_wd_gather_floats(xyz + 1, at),
+                       fl_wd_gather_floats(xyz + 2, at)};
     }
 }
 

@@ -92,6 +92,23 @@ static void test_powers(void **state)
     }
 }
 
+/* Within an eighth of a turn there is nothing to reduce: the short way has the same bits. */
+static void test_eighths(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i <= 1u << 20; i++) {
+        float x = (float)i / (float)(1u << 23), s[4], c[4];
+        fl_f_sincos_turns(x, &s[0], &c[0]);
+        fl_f_sincos_eighth(x, &s[1], &c[1]);
+        fl_f_sincos_turns(-x, &s[2], &c[2]);
+        fl_f_sincos_eighth(-x, &s[3], &c[3]);
+        assert_memory_equal(&s[0], &s[1], sizeof s[0]);
+        assert_memory_equal(&c[0], &c[1], sizeof c[0]);
+        assert_memory_equal(&s[2], &s[3], sizeof s[2]);
+        assert_memory_equal(&c[2], &c[3], sizeof c[2]);
+    }
+}
+
 static void test_clamps(void **state)
 {
     (void)state;
@@ -219,6 +236,7 @@ int main(void)
         cmocka_unit_test(test_exact_angles),
         cmocka_unit_test(test_atan2_quadrants),
         cmocka_unit_test(test_powers),
+        cmocka_unit_test(test_eighths),
         cmocka_unit_test(test_clamps),
         cmocka_unit_test(test_srgb_is_monotone),
         cmocka_unit_test(test_lanes_equal_scalars_and_pins),
