@@ -195,19 +195,36 @@ void fl_film_mean(const fl_film *film, float *out_rgb)
         fl_film_row(film, 0, y, film->width, out_rgb + (size_t)3 * y * film->width);
 }
 
+/* Most pixels have one sample, which is their block (0 when it was invalid): this is done again and
+ * again while workers wait for the lock. */
+static uint32_t row_covered(const fl_film *film, uint32_t y, float *out_rgb, uint8_t *out_rgba)
+{
+    uint32_t covered = 0;
+    bool is_empty = film->row_epoch[y] != film->epoch;
+    size_t at = (size_t)y * film->width;
+    for (uint32_t x = 0; x < film->width; x++, at++) {
+        uint32_t samples = is_empty ? 0 : film->samples[at];
+        out_rgba[4 * x + 3] = samples ? 255 : 0;
+        if (samples == 0)
+            continue;
+        float *rgb = out_rgb + (size_t)3 * covered++;
+        if (samples > 1) {
+            pixel_mean(film, at, rgb);
+            continue;
+        }
+        for (int c = 0; c < 3; c++)
+            rgb[c] = (float)film->block[at][c];
+    }
+    return covered;
+}
+
 uint32_t fl_film_rows_covered(const fl_film *film, uint32_t row_begin, uint32_t row_end,
                               float *out_rgb, uint8_t *out_rgba)
 {
     FL_ASSERT(row_begin <= row_end && row_end <= film->height);
     uint32_t covered = 0;
-    for (uint32_t y = row_begin; y < row_end; y++)
-        for (uint32_t x = 0; x < film->width; x++, out_rgba += 4) {
-            out_rgba[3] = 0;
-            if (!has_sample(film, x, y))
-                continue;
-            out_rgba[3] = 255;
-            pixel_mean(film, (size_t)y * film->width + x, out_rgb + (size_t)3 * covered++);
-        }
+    for (uint32_t y = row_begin; y < row_end; y++, out_rgba += (size_t)4 * film->width)
+        covered += row_covered(film, y, out_rgb + (size_t)3 * covered, out_rgba);
     return covered;
 }
 

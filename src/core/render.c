@@ -317,6 +317,16 @@ void fl_render_progress(fl_render *render, fl_progress *out_progress)
     pthread_mutex_unlock(&render->lock);
 }
 
+bool fl_render_has_sample(fl_render *render, uint64_t generation)
+{
+    pthread_mutex_lock(&render->lock);
+    const fl_job *job = render->shown;
+    bool has_sample =
+        job && job->generation >= generation && fl_schedule_complete_samples(job->schedule) > 0;
+    pthread_mutex_unlock(&render->lock);
+    return has_sample;
+}
+
 bool fl_render_wait(fl_render *render, double seconds)
 {
     struct timespec until;

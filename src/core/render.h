@@ -21,8 +21,8 @@ typedef struct fl_render_options {
      * lens or a light of some size, else half as much of the neighbours for 1. */
     bool smooths_display;
     /** Called by a worker, with no lock held, when there is something new to show or the render is
-     * done or has failed; at most once until the next fl_render_display or fl_render_progress.
-     * NULL: none. Must not call the render. */
+     * done or has failed; at most once until the next fl_render_display or fl_render_progress, and
+     * once more when sample 0 is complete. NULL: none. Must not call the render. */
     void (*notify)(void *context);
     void *notify_context;
 } fl_render_options;
@@ -116,6 +116,10 @@ void fl_render_set_paused(fl_render *render, bool is_paused);
 
 /** What has been done so far for the generation being rendered. Any thread. */
 void fl_render_progress(fl_render *render, fl_progress *out_progress);
+
+/** Whether the picture to show, of `generation` or a later one, has a sample in every pixel: for
+ * those who were woken and want to know whether it is worth a look. Any thread. */
+bool fl_render_has_sample(fl_render *render, uint64_t generation);
 
 /** Block until done, failed, or `seconds` have passed (< 0: forever); returns at once when paused
  * or empty. True: done. */

@@ -119,8 +119,10 @@ static void commit(fl_worker *worker, const errand *e, fl_trash *trash)
         job->first_sample_seconds <= 0.0 && fl_schedule_complete_samples(job->schedule) > 0;
     if (is_picture)
         job->first_picture_seconds = fl_render_now() - job->requested_at;
-    if (is_first_sample)
+    if (is_first_sample) {
         job->first_sample_seconds = fl_render_now() - job->requested_at;
+        render->is_notified = false; /* The owner hears of that, whenever it looked last. */
+    }
     if (is_picture)
         fl_render_show_current(render, trash);
     if (job == render->shown)

@@ -13,8 +13,7 @@
 #include "io/state_text.h"
 #include "viewer/log.h"
 #include "viewer/pace.h"
-#include "viewer/session.h"
-#include "viewer/view.h"
+#include "viewer/present.h"
 #include "viewer/watch.h"
 #include "viewer/words.h"
 
@@ -22,8 +21,7 @@ enum {
     RESIZE_QUIET_MS = 100,
     PAD_POLL_MS = 16,
     RELOAD_QUIET_MS = 100, /* Several files saved together are read once. */
-    SNAPSHOT_NUMBER_MAX = 999999,
-    NOTES_BYTES = 1024
+    SNAPSHOT_NUMBER_MAX = 999999
 };
 
 #define GLFW_INCLUDE_NONE
@@ -46,6 +44,7 @@ typedef struct app {
     uint32_t done_samples;
     bool wants_refresh; /**< Ask the render without waiting for the next due time. */
     bool needs_draw, has_quit;
+    bool has_newer; /**< Of the picture, and it was not drawn yet. */
     char title[160];
     fl_diags diags; /**< Of the current step; shown, then emptied. */
 } app;
@@ -68,13 +67,6 @@ static void wake(void *context)
 {
     vw_platform *platform = context;
     platform->ops->wake(platform);
-}
-
-static void upload(vw_view *view, vw_session *session)
-{
-    uint32_t width, height;
-    const uint8_t *bytes = vw_session_window(session, &width, &height);
-    vw_view_upload(view, bytes, width, height);
 }
 
 static void show_error(app *a)
@@ -334,19 +326,17 @@ static void announce(app *a)
 static void refresh_if_due(app *a)
 {
     vw_session *session = &a->session;
-    if (!a->wants_refresh && a->now_ms < vw_pace_due_ms(&a->pace, &session->progress))
+    if (!a->wants_refresh && a->now_ms < vw_pace_due_ms(&a->pace, &session->progress) &&
+        !vw_session_is_full_sample_new(session))
         return;
     fl_render_state before = session->progress.state;
     uint32_t samples_before = session->progress.complete_samples;
     a->wants_refresh = false;
     bool is_newer = vw_session_refresh(session, &a->diags);
     vw_pace_shown(&a->pace, &session->progress, a->now_ms);
-    if (is_newer) {
-        upload(a->view, session);
-        a->needs_draw = true;
-    }
-    a->needs_draw |=
-        session->progress.state != before || session->progress.complete_samples != samples_before;
+    a->has_newer |= is_newer;
+    a->needs_draw |= is_newer || session->progress.state != before ||
+                     session->progress.complete_samples != samples_before;
     if (a->diags.error_count)
         show_error(a);
     if (session->exact_samples && session->progress.complete_samples >= session->exact_samples)
@@ -364,16 +354,17 @@ static bool draw(app *a, fl_diags *diags)
         a->platform->ops->set_title(a->platform, title);
     }
     a->needs_draw = false;
-    char notes[NOTES_BYTES];
-    vw_session_notes(session, notes, sizeof notes);
-    vw_board board;
-    bool has_board = vw_session_board(session, &board);
-    vw_texts texts = {
-        .notes = notes, .error = session->error_text, .board = has_board ? &board : NULL};
-    if (!vw_view_draw(a->view, &session->state, &session->progress, &texts, diags))
+    if (!vw_present(a->view, a->platform, session, a->has_newer, diags))
         return false;
-    a->platform->ops->swap(a->platform);
+    if (a->has_newer)
+        vw_pace_took(&a->pace, clock_ms(a) - a->now_ms);
+    a->has_newer = false;
     return true;
+}
+
+static bool may_draw(const app *a)
+{
+    return !a->session.state.is_hidden && a->now_ms >= vw_pace_draw_from_ms(&a->pace);
 }
 
 /* Seconds until something is due without input; < 0: nothing is. */
@@ -384,6 +375,8 @@ static double time_to_sleep(const app *a)
         return 0.0;
     uint64_t until =
         earlier(a->restart_ms == UINT64_MAX ? UINT64_MAX : restart_from_ms(a), a->reload_ms);
+    if (a->needs_draw && !session->state.is_hidden)
+        until = earlier(until, vw_pace_draw_from_ms(&a->pace));
     if (vw_input_is_moving(&session->input))
         until = earlier(until, vw_input_next_tick_ms(&session->input));
     const vw_platform_ops *ops = a->platform->ops;
@@ -414,7 +407,7 @@ static bool loop(app *a, fl_diags *diags)
         refresh_if_due(a);
         /* After the look, which may have shown what a restart waited for. */
         restart_if_due(a);
-        if (a->needs_draw && !a->session.state.is_hidden && !draw(a, diags))
+        if (a->needs_draw && may_draw(a) && !draw(a, diags))
             return false;
         if (a->options->was_interrupted && a->options->was_interrupted())
             break;

@@ -13,8 +13,7 @@
 #include "io/image_file.h"
 #include "viewer/log.h"
 #include "viewer/pace.h"
-#include "viewer/session.h"
-#include "viewer/view.h"
+#include "viewer/present.h"
 
 /* Times of one kind, milliseconds. */
 typedef struct times {
@@ -86,13 +85,6 @@ static void wake(void *context)
     platform->ops->wake(platform);
 }
 
-static void upload(vw_view *view, vw_session *session)
-{
-    uint32_t width, height;
-    const uint8_t *bytes = vw_session_window(session, &width, &height);
-    vw_view_upload(view, bytes, width, height);
-}
-
 /* Tone-map, upload, draw: what the window does with a newer picture. */
 static bool show(replay *r, bool *out_is_new)
 {
@@ -100,17 +92,8 @@ static bool show(replay *r, bool *out_is_new)
     *out_is_new = vw_session_refresh(session, r->diags);
     if (r->diags->error_count)
         return false;
-    if (*out_is_new)
-        upload(r->view, session);
-    char notes[1024];
-    vw_session_notes(session, notes, sizeof notes);
-    vw_board board;
-    bool has_board = vw_session_board(session, &board);
-    vw_texts texts = {
-        .notes = notes, .error = session->error_text, .board = has_board ? &board : NULL};
-    if (!vw_view_draw(r->view, &session->state, &session->progress, &texts, r->diags))
+    if (!vw_present(r->view, r->platform, session, *out_is_new, r->diags))
         return false;
-    r->platform->ops->swap(r->platform);
     vw_view_finish(r->view);
     return true;
 }
@@ -133,13 +116,16 @@ static bool watch(replay *r, double begin_s, uint32_t samples)
     while (session->progress.state != FL_RENDER_DONE || !has_first) {
         bool is_new;
         double sleep_s = (double)vw_pace_due_ms(&pace, &session->progress) * 1e-3 - seconds_now();
-        if (sleep_s > 0.0) {
+        if (sleep_s > 0.0 && !vw_session_is_full_sample_new(session)) {
             r->platform->ops->pump(r->platform, sleep_s);
             continue;
         }
+        double look_s = seconds_now();
         if (!show(r, &is_new) || has_failed(r) || is_interrupted(r))
             return false;
-        vw_pace_shown(&pace, &session->progress, (uint64_t)(seconds_now() * 1e3));
+        vw_pace_shown(&pace, &session->progress, (uint64_t)(look_s * 1e3));
+        if (is_new)
+            vw_pace_took(&pace, (uint64_t)((seconds_now() - look_s) * 1e3 + 0.5));
         const fl_progress *p = &session->progress;
         if (is_new && !has_first && p->complete_ranks > 0) {
             has_first = true;

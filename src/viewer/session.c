@@ -352,6 +352,14 @@ bool vw_session_refresh(vw_session *session, fl_diags *diags)
     return is_changed && session->revision != 0 && vw_show_compose(session, diags);
 }
 
+bool vw_session_is_full_sample_new(const vw_session *session)
+{
+    return session->progress.complete_samples == 0 &&
+           fl_render_has_sample(session->render, session->progress.generation) &&
+           (!session->mix.unit ||
+            fl_render_has_sample(session->mix.unit, session->mix.generations[1]));
+}
+
 float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags)
 {
     float *rgb = NULL;

@@ -32,9 +32,9 @@ typedef struct vw_session {
     uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
-    uint8_t *backdrop; /**< Around a region: the last whole picture, dimmed. Owned. */
+    uint8_t *backdrop;      /**< Around a region: the last whole picture, dimmed. Owned. */
     uint32_t backdrop_width, backdrop_height;
-    vw_mix mix;             /**< Of state.is_mixing. */
+    vw_mix mix; /**< Of state.is_mixing. */
     vw_history history;
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */
@@ -91,6 +91,9 @@ bool vw_session_take_refined(vw_session *session);
 
 /** Get newer bytes and progress; true: what is shown changed. Never waits for a worker. */
 bool vw_session_refresh(vw_session *session, fl_diags *diags);
+
+/** The first whole sample has come since the last refresh, and is worth one at once. */
+bool vw_session_is_full_sample_new(const vw_session *session);
 
 /** The bytes to show: progress.width x progress.height, RGBA. Valid until the next refresh. */
 const uint8_t *vw_session_shown(vw_session *session);

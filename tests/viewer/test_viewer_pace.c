@@ -10,7 +10,8 @@ static void the_first_look_is_one_frame_after_the_first_edit(void **unused)
 {
     (void)unused;
     vw_pace pace = {0};
-    fl_progress shown = {.generation = 1, .complete_samples = 300, .complete_ranks = 64, .seconds = 9};
+    fl_progress shown = {
+        .generation = 1, .complete_samples = 300, .complete_ranks = 64, .seconds = 9};
     vw_pace_shown(&pace, &shown, 1000);
     assert_int_equal(vw_pace_due_ms(&pace, &shown), 1500);
     assert_int_equal(vw_pace_held_until_ms(&pace), 0);
@@ -37,9 +38,9 @@ static void looks_get_rarer_as_the_picture_settles(void **unused)
         uint32_t ranks, samples;
         double seconds;
         uint64_t interval_ms;
-    } steps[] = {{1, 0, 0.01, 33},  {7, 0, 0.02, 33}, {8, 0, 0.03, 16},  {64, 1, 0.1, 16},
-                 {64, 4, 0.4, 16},  {64, 4, 9.0, 16}, {64, 5, 0.5, 100}, {64, 9, 0.99, 100},
-                 {64, 10, 1.0, 500}};
+    } steps[] = {{1, 0, 0.01, 33},  {7, 0, 0.02, 33},   {8, 0, 0.03, 16},
+                 {64, 1, 0.1, 16},  {64, 4, 0.4, 16},   {64, 4, 9.0, 16},
+                 {64, 5, 0.5, 100}, {64, 9, 0.99, 100}, {64, 10, 1.0, 500}};
     vw_pace pace = {0};
     for (size_t i = 0; i < FL_COUNT_OF(steps); i++) {
         fl_progress shown = {.generation = 1,
@@ -49,6 +50,53 @@ static void looks_get_rarer_as_the_picture_settles(void **unused)
         vw_pace_shown(&pace, &shown, 70);
         assert_int_equal(vw_pace_due_ms(&pace, &shown), 70 + steps[i].interval_ms);
     }
+}
+
+static void a_slow_screen_is_drawn_rarely(void **unused)
+{
+    (void)unused;
+    vw_pace pace = {0};
+    fl_progress shown = {.generation = 1, .complete_ranks = 20};
+    vw_pace_shown(&pace, &shown, 100);
+    vw_pace_took(&pace, 2);
+    assert_int_equal(vw_pace_due_ms(&pace, &shown), 100 + 16);
+    vw_pace_took(&pace, 10);
+    assert_int_equal(vw_pace_due_ms(&pace, &shown), 100 + 70);
+    /* The first look at an edit is as soon as ever, and all other drawing waits for it. */
+    vw_pace_restart(&pace, 2, 200);
+    assert_int_equal(vw_pace_due_ms(&pace, &shown), 200 + VW_PACE_FIRST_MS);
+    assert_int_equal(vw_pace_draw_from_ms(&pace), 200 + VW_PACE_FIRST_MS);
+    shown.generation = 2;
+    vw_pace_shown(&pace, &shown, 207);
+    assert_int_equal(vw_pace_draw_from_ms(&pace), 0);
+}
+
+static void the_first_whole_sample_is_worth_a_look(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    options.limits.samples = 2;
+    vw_session session;
+    fl_diags diags = {0};
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    for (int edit = 0; edit < 3; edit++) {
+        assert_true(vw_session_restart(&session, &diags));
+        assert_true(fl_render_wait(session.render, -1.0));
+        /* Of an older picture everything was seen. */
+        assert_int_equal(vw_session_is_full_sample_new(&session), edit == 0);
+        assert_true(vw_session_refresh(&session, &diags));
+        assert_false(vw_session_is_full_sample_new(&session));
+        session.progress.complete_samples = 0; /* As if it had been seen amid sample 0. */
+        assert_true(vw_session_is_full_sample_new(&session));
+        assert_true(vw_session_restart(&session, &diags));
+        fl_render_progress(session.render, &session.progress);
+        session.progress.complete_samples = 0;
+        session.progress.generation = session.progress.newest_generation + 1;
+        assert_false(vw_session_is_full_sample_new(&session)); /* Not of that one. */
+        assert_true(fl_render_wait(session.render, -1.0));
+        session.progress.complete_samples = 1;
+    }
+    vw_session_close(&session);
 }
 
 static fl_render_state state_of(vw_session *session)
@@ -88,6 +136,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_first_look_is_one_frame_after_the_first_edit),
         cmocka_unit_test(looks_get_rarer_as_the_picture_settles),
+        cmocka_unit_test(a_slow_screen_is_drawn_rarely),
+        cmocka_unit_test(the_first_whole_sample_is_worth_a_look),
         cmocka_unit_test(an_icon_renders_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
