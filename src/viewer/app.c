@@ -21,7 +21,8 @@ enum {
     RESIZE_QUIET_MS = 100,
     PAD_POLL_MS = 16,
     RELOAD_QUIET_MS = 100, /* Several files saved together are read once. */
-    SNAPSHOT_NUMBER_MAX = 999999
+    SNAPSHOT_NUMBER_MAX = 999999,
+    WELCOME_MS = 8000
 };
 
 #define GLFW_INCLUDE_NONE
@@ -454,6 +455,11 @@ static bool open_window(app *a, fl_diags *diags)
     uint32_t width, height;
     a->platform->ops->framebuffer_size(a->platform, &width, &height);
     vw_state_resize(state, width, height);
+    if (a->platform->ops->content_scale) {
+        vw_event event = {.kind = VW_EVENT_SCALE,
+                          .x = a->platform->ops->content_scale(a->platform)};
+        vw_event_push(&a->platform->events, &event);
+    }
     a->view = vw_view_create(a->platform, a->options->shader_dir, diags);
     return a->view != NULL;
 }
@@ -469,6 +475,10 @@ bool vw_run(const vw_options *options, fl_diags *diags)
         clock_gettime(CLOCK_MONOTONIC, &a.begin);
         a.watch = vw_watch_create(wake, a.platform);
         watch_files(&a);
+        char welcome[VW_MESSAGE_MAX];
+        vw_words_welcome(a.session.keymap, welcome, sizeof welcome);
+        vw_state_say(&a.session.state, "%s", welcome);
+        a.session.state.message_until_ms = WELCOME_MS;
         a.loading = vw_loading_create(&options->loader, wake, a.platform, diags);
         is_fine = a.loading && loop(&a, diags);
         is_fine &= close_record(&a, diags);

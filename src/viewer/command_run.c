@@ -356,6 +356,7 @@ vw_dirty vw_run_help(vw_state *state, vw_amount amount)
 {
     (void)amount;
     state->help_page = (state->help_page + 1) % (VW_HELP_PAGES + 1);
+    state->message_until_ms = 0; /* It would stand in front. */
     return VW_DIRTY_WINDOW;
 }
 

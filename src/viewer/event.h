@@ -19,12 +19,15 @@ typedef enum vw_event_kind {
     VW_EVENT_PASTE,   /**< Text of the clipboard, in `path`, on one line. */
     VW_EVENT_FOCUS,   /**< The window lost the keyboard: everything held is released. */
     VW_EVENT_ICONIFY, /**< The window became an icon (action GLFW_PRESS), or a window again. */
+    VW_EVENT_SCALE,   /**< The screen has another density: x pixels of text per point. */
     VW_EVENT_AXIS,    /**< A gamepad's stick or trigger: x, -1 to 1, 0 within the dead zone. */
     VW_EVENT_PAD,     /**< A gamepad's button. */
     VW_EVENT_CLOSE    /**< The user asked the window to close. */
 } vw_event_kind;
 
 enum { VW_PATH_MAX = 1024 };
+#define VW_SCALE_MIN 0.5 /* Of VW_EVENT_SCALE. */
+#define VW_SCALE_MAX 8.0
 
 typedef struct vw_event {
     vw_event_kind kind;

@@ -2,6 +2,7 @@
 #include "viewer/help.h"
 
 #include <stdio.h>
+#include <string.h>
 
 enum {
     SIZE_MAX_PX = 14,
@@ -70,6 +71,8 @@ void vw_help_layout(vw_help *help, const vw_overlay *overlay, vw_platform *platf
     FL_ASSERT(vw_command_count <= VW_HELP_ROWS_MAX);
     for (size_t i = 0; i < vw_command_count; i++) {
         vw_words_keys(&vw_commands[i], state->keymap, platform, help->keys[i]);
+        if (strcmp(vw_commands[i].name, "help") == 0)
+            help->own_keys = help->keys[i];
         if (!is_on_page(vw_commands[i].group, state->help_page))
             continue;
         keys = fl_max_u32(keys, vw_text_columns(help->keys[i]));
@@ -106,8 +109,10 @@ void vw_help_draw(const vw_help *help, vw_overlay *overlay, const vw_state *stat
     double y[VW_HELP_COLUMNS] = {top, top};
     vw_overlay_panel(overlay, help->x, help->y, help->width, help->height, help->pad * 0.6,
                      panel_ink);
-    char page[32];
-    snprintf(page, sizeof page, "%u of %d", state->help_page, VW_HELP_PAGES);
+    char page[VW_KEYS_MAX + 32];
+    bool is_last = state->help_page == VW_HELP_PAGES;
+    snprintf(page, sizeof page, "%u of %d   %s: %s", state->help_page, VW_HELP_PAGES,
+             help->own_keys, is_last ? "close" : "next");
     vw_overlay_text(overlay, VW_FACE_HELP,
                     help->x + help->width - help->pad - vw_text_columns(page) * cell.width, top,
                     help_ink, page);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The help panel: every command with its keys and its live value, two pages in the largest text
- * that fits the window.
+ * The help panel: every command with its keys and its live value, in pages of the largest text that
+ * fits the window.
  */
 #ifndef VW_HELP_H
 #define VW_HELP_H
@@ -17,6 +17,7 @@ typedef struct vw_help {
     uint32_t columns;                /**< 1, or 2: the page's groups side by side. */
     double column_width, keys_width, help_width;
     char keys[VW_HELP_ROWS_MAX][VW_KEYS_MAX];
+    const char *own_keys; /**< Of those, the help's. */
 } vw_help;
 
 /** Decide size and place, for the window in `state`. Reads key labels from `platform`. */

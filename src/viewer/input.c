@@ -303,6 +303,10 @@ vw_dirty vw_input_event(vw_input *input, vw_state *state, const vw_event *event,
     case VW_EVENT_PAD:
         dirty |= pad_event(input, state, event);
         break;
+    case VW_EVENT_SCALE:
+        state->text_scale = event->x;
+        dirty |= VW_DIRTY_WINDOW;
+        break;
     case VW_EVENT_ICONIFY:
         state->is_hidden = event->action == GLFW_PRESS;
         dirty |= VW_DIRTY_LIMITS;

@@ -250,6 +250,19 @@ static bool parse_resize(reader *r, vw_log_entry *entry)
            read_count(r, "the height", 1, FL_SIDE_MAX, &entry->event.height) && read_end(r);
 }
 
+static bool parse_scale(reader *r, vw_log_entry *entry)
+{
+    entry->event.kind = VW_EVENT_SCALE;
+    skip_blanks(r);
+    word value = {r->at, (size_t)(r->end - r->at)};
+    if (!read_number(r, "the scale", &entry->event.x))
+        return false;
+    if (!(entry->event.x >= VW_SCALE_MIN && entry->event.x <= VW_SCALE_MAX))
+        return fl_error(r->diags, loc_at(r, value.text, value.bytes), "the scale must be %g to %g",
+                        VW_SCALE_MIN, VW_SCALE_MAX);
+    return read_end(r);
+}
+
 static bool parse_drop(reader *r, vw_log_entry *entry)
 {
     entry->event.kind = VW_EVENT_DROP;
@@ -319,6 +332,7 @@ static const struct {
     {"focus", parse_focus},     {"snapshot", parse_snapshot}, {"quit", parse_quit},
     {"paste", parse_paste},     {"window", parse_window},     {"iconify", parse_iconify},
     {"restore", parse_restore}, {"axis", parse_axis},         {"pad", parse_pad},
+    {"scale", parse_scale},
 };
 
 static bool add_entry(reader *r, const vw_log_entry *entry)

@@ -9,6 +9,7 @@
  *     716 cursor 320.5 200
  *     900 scroll 0 -1
  *     1000 resize 800 600
+ *     1100 scale 2
  *     1200 drop other.scene
  *     1300 paste --camera '0 1 5  0 0 0  0 1 0  40'
  *     1350 axis LEFT_Y -0.5

@@ -69,6 +69,9 @@ void vw_log_write_event(FILE *file, uint64_t ms, const vw_event *event)
     case VW_EVENT_FOCUS:
         fprintf(file, "%llu focus lost", at);
         break;
+    case VW_EVENT_SCALE:
+        fprintf(file, "%llu scale %s", at, x);
+        break;
     case VW_EVENT_AXIS:
         fprintf(file, "%llu axis %s %s", at, vw_axis_name(event->code), x);
         break;

@@ -81,12 +81,6 @@ static void framebuffer_size(vw_platform *platform, uint32_t *out_width, uint32_
     *out_height = ((vw_offscreen *)platform)->height;
 }
 
-static double content_scale(vw_platform *platform)
-{
-    (void)platform;
-    return 1.0;
-}
-
 static const char *clipboard(vw_platform *platform)
 {
     return ((vw_offscreen *)platform)->clipboard;
@@ -148,7 +142,6 @@ vw_platform *vw_offscreen_create(const vw_offscreen_kind *kind, const vw_window_
                                        .wake = wake,
                                        .swap = swap,
                                        .framebuffer_size = framebuffer_size,
-                                       .content_scale = content_scale,
                                        .get_proc = kind->ops.get_proc,
                                        .clipboard = clipboard,
                                        .set_clipboard = set_clipboard,

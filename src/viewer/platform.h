@@ -22,7 +22,8 @@ typedef struct vw_platform_ops {
     void (*wake)(vw_platform *platform);
     void (*swap)(vw_platform *platform);
     void (*framebuffer_size)(vw_platform *platform, uint32_t *out_width, uint32_t *out_height);
-    /** Pixels of text per point: 1 on a plain display, 2 on a dense one. */
+    /** Pixels of text per point: 1 on a plain display, 2 on a dense one. VW_SCALE_MIN to
+     * VW_SCALE_MAX; changes are events. NULL: 1. */
     double (*content_scale)(vw_platform *platform);
     vw_gl_proc (*get_proc)(void *platform, const char *name);
     /** Text of the clipboard, or NULL; valid until the next call. */

@@ -16,6 +16,7 @@ typedef struct platform_glfw {
     vw_platform base;
     GLFWwindow *window;
     GLFWgamepadstate pad; /* As last told. */
+    bool has_keyboard;    /* A key was pressed. */
 } platform_glfw;
 
 #define DEAD_ZONE  0.15
@@ -32,6 +33,7 @@ static void push(GLFWwindow *window, const vw_event *event)
 static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods)
 {
     (void)scancode;
+    ((platform_glfw *)glfwGetWindowUserPointer(window))->has_keyboard = true;
     push(window,
          &(vw_event){.kind = VW_EVENT_KEY, .code = key, .action = action, .mods = mods & MODS});
 }
@@ -84,8 +86,7 @@ static void on_size(GLFWwindow *window, int width, int height)
                                  .height = (uint32_t)height});
 }
 
-/* Contents were damaged or the window moved to a screen of another density: a resize to the same
- * size draws again. */
+/* Contents were damaged: a resize to the same size draws again. */
 static void on_refresh(GLFWwindow *window)
 {
     int width, height;
@@ -93,11 +94,15 @@ static void on_refresh(GLFWwindow *window)
     on_size(window, width, height);
 }
 
+static double scale_of(float raw)
+{
+    return fl_clamp((double)raw, VW_SCALE_MIN, VW_SCALE_MAX);
+}
+
 static void on_scale(GLFWwindow *window, float x, float y)
 {
     (void)x;
-    (void)y;
-    on_refresh(window);
+    push(window, &(vw_event){.kind = VW_EVENT_SCALE, .x = scale_of(y)});
 }
 
 static void on_drop(GLFWwindow *window, int count, const char **paths)
@@ -214,7 +219,7 @@ static double content_scale(vw_platform *platform)
 {
     float x = 1.0f, y = 1.0f;
     glfwGetWindowContentScale(((platform_glfw *)platform)->window, &x, &y);
-    return fl_clamp((double)y, 0.5, 8.0);
+    return scale_of(y);
 }
 
 static vw_gl_proc get_proc(void *platform, const char *name)
@@ -240,8 +245,8 @@ static void set_title(vw_platform *platform, const char *title)
 
 static const char *key_label(vw_platform *platform, int key)
 {
-    (void)platform;
-    return glfwGetKeyName(key, 0);
+    /* GLFW 3.3 crashes on Wayland when it is asked before there is a keyboard. */
+    return ((platform_glfw *)platform)->has_keyboard ? glfwGetKeyName(key, 0) : NULL;
 }
 
 static const vw_platform_ops ops = {

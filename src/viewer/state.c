@@ -119,6 +119,7 @@ void vw_state_init(vw_state *state, const fl_params *params, const fl_compiled *
                         .height = state->height,
                         .now_ms = state->now_ms,
                         .keymap = state->keymap,
+                        .text_scale = state->text_scale,
                         .is_hidden = state->is_hidden,
                         .mode = VW_MODE_FLY,
                         .speed = 1.0,

@@ -162,6 +162,7 @@ typedef struct vw_state {
     uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
     bool is_hud_shown, is_paused;
     bool is_refining;       /**< Better hierarchies are on their way. */
+    double text_scale;      /**< Pixels of text per point; 0: as 1. */
     bool is_hidden;         /**< The window is iconified: nothing is rendered or drawn. */
     uint32_t width, height; /**< Framebuffer, pixels. */
     bool follows_window;    /**< The picture takes the window's size; else it keeps its own and is

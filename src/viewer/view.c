@@ -117,7 +117,8 @@ static void draw_message(vw_view *view, const vw_state *state, const char *messa
     vw_cell cell = vw_overlay_cell(view->overlay, VW_FACE_NORMAL);
     double width = (double)vw_text_columns(message) * cell.width + floor(24.0 * scale);
     double height = cell.height + floor(10.0 * scale);
-    double x = floor(((double)state->width - width) / 2.0),
+    /* Of what is too wide the beginning is seen. */
+    double x = fl_max(floor(((double)state->width - width) / 2.0), 0.0),
            y = bottom - height - floor(10.0 * scale);
     vw_overlay_panel(view->overlay, x, y, width, height, height / 2.0, message_ink);
     vw_overlay_text(view->overlay, VW_FACE_NORMAL, x + floor(12.0 * scale), y + floor(5.0 * scale),
@@ -198,7 +199,7 @@ bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progr
                   const vw_texts *texts, fl_diags *diags)
 {
     const vw_gl *gl = &view->gl;
-    double scale = view->platform->ops->content_scale(view->platform);
+    double scale = state->text_scale > 0.0 ? state->text_scale : 1.0;
     gl->Viewport(0, 0, (GLsizei)state->width, (GLsizei)state->height);
     gl->ClearColor(0.075f, 0.08f, 0.09f, 1.0f);
     gl->Clear(GL_COLOR_BUFFER_BIT);
@@ -206,9 +207,12 @@ bool vw_view_draw(vw_view *view, const vw_state *state, const fl_progress *progr
                  floor((double)state->picture_width * state->picture_scale + 0.5),
                  floor((double)state->picture_height * state->picture_scale + 0.5));
     view->is_help_drawn = state->help_page > 0;
-    uint32_t sizes[VW_FACE_COUNT] = {[VW_FACE_NORMAL] = (uint32_t)(TEXT_PX * scale + 0.5)};
-    vw_help_layout(&view->help, view->overlay, view->platform, state, scale);
-    sizes[VW_FACE_HELP] = view->help.size_px;
+    uint32_t size = (uint32_t)(TEXT_PX * scale + 0.5);
+    if (view->is_help_drawn)
+        vw_help_layout(&view->help, view->overlay, view->platform, state, scale);
+    uint32_t sizes[VW_FACE_COUNT] = {[VW_FACE_NORMAL] = size, [VW_FACE_HELP] = size};
+    if (view->help.size_px > 0)
+        sizes[VW_FACE_HELP] = view->help.size_px;
     if (!vw_overlay_set_sizes(view->overlay, sizes, diags))
         return false;
     vw_overlay_begin(view->overlay);

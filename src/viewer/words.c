@@ -199,6 +199,21 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
     }
 }
 
+void vw_words_welcome(const vw_keymap *keymap, char *out, size_t out_bytes)
+{
+    static const struct {
+        const char *command, *what;
+    } first[] = {{"help", "help"}, {"look", "look"}, {"forward", "fly"}, {"focus-at", "focus"}};
+    buffer b = {out, out_bytes, 0};
+    out[0] = 0;
+    for (size_t i = 0; i < FL_COUNT_OF(first); i++) {
+        char keys[VW_KEYS_MAX];
+        vw_words_keys(vw_command_named(first[i].command), keymap, NULL, keys);
+        if (keys[0]) /* A user may have taken them all away. */
+            add(&b, "%s%s: %s", b.length ? "    " : "", keys, first[i].what);
+    }
+}
+
 uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
                          vw_status out[VW_STATUS_MAX])
 {

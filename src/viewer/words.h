@@ -16,6 +16,9 @@ enum { VW_KEYS_MAX = 64, VW_STATUS_MAX = 20 };
 void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platform *platform,
                    char out[VW_KEYS_MAX]);
 
+/** Where to begin, for who has just opened the window: help, look, fly, focus. */
+void vw_words_welcome(const vw_keymap *keymap, char *out, size_t out_bytes);
+
 /** One item of the status line: a dim label (may be empty) and a bright value. */
 typedef struct vw_status {
     char label[24], value[112];

@@ -127,6 +127,7 @@ static void what_is_written_reads_back(void **unused)
         {.kind = VW_EVENT_PAD, .code = GLFW_GAMEPAD_BUTTON_DPAD_UP, .action = GLFW_PRESS},
         {.kind = VW_EVENT_ICONIFY, .action = GLFW_PRESS},
         {.kind = VW_EVENT_ICONIFY, .action = GLFW_RELEASE},
+        {.kind = VW_EVENT_SCALE, .x = 1.5},
     };
     char *text = NULL;
     size_t bytes = 0;
@@ -134,8 +135,8 @@ static void what_is_written_reads_back(void **unused)
     vw_log_write_header(file, 640, 480, "a b.txt");
     for (size_t i = 0; i < FL_COUNT_OF(events); i++)
         vw_log_write_event(file, 10 * i, &events[i]);
-    vw_log_write_snapshot(file, 100, "s t.exr", 7);
-    vw_log_write_quit(file, 101);
+    vw_log_write_snapshot(file, 200, "s t.exr", 7);
+    vw_log_write_quit(file, 201);
     fclose(file);
     fl_diags diags = {0};
     vw_log log;

@@ -39,7 +39,12 @@ static const int modifiers[] = {
 static vw_event random_event(void)
 {
     vw_event event = {.mods = modifiers[draw(FL_COUNT_OF(modifiers))], .action = (int)draw(3)};
-    switch (draw(8)) {
+    switch (draw(9)) {
+    case 8:
+        event.kind = draw(3) ? VW_EVENT_AXIS : draw(9) ? VW_EVENT_PAD : VW_EVENT_SCALE;
+        event.code = (int)draw(event.kind == VW_EVENT_AXIS ? 6 : 15);
+        event.x = event.kind == VW_EVENT_SCALE ? 1.0 + draw(3) : draw(9) / 4.0 - 1.0;
+        break;
     case 0:
         event.kind = VW_EVENT_BUTTON;
         event.code = (int)draw(3);

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "viewer/input.h"
 #include "viewer/view.h"
 
 static const char *platform_name;
@@ -146,6 +147,27 @@ static size_t count_changed(const scene *s, double x0, double y0, double x1, dou
     return inside;
 }
 
+/* Twice the density in twice as many pixels: the same layout, twice as large but for whole pixels of
+ * letters. */
+static void a_dense_screen_has_larger_text(void **unused)
+{
+    (void)unused;
+    double box[2][4];
+    for (uint32_t i = 0; i < 2; i++) {
+        scene s;
+        OPEN_OR_SKIP(&s, 900 << i, 700 << i, 900 << i, 700 << i);
+        vw_event event = {.kind = VW_EVENT_SCALE, .x = 1.0 + i};
+        vw_input input = {0};
+        assert_int_equal(vw_input_event(&input, &s.state, &event, 0), VW_DIRTY_WINDOW);
+        s.state.help_page = 1;
+        draw(&s);
+        assert_true(vw_view_help_box(s.view, &box[i][0], &box[i][1], &box[i][2], &box[i][3]));
+        close_scene(&s);
+    }
+    for (int k = 0; k < 4; k++)
+        assert_true(fabs(box[1][k] - 2.0 * box[0][k]) <= 0.08 * box[1][2]);
+}
+
 static void help_draws_in_its_panel_only(void **unused)
 {
     (void)unused;
@@ -265,6 +287,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(bytes_arrive_unchanged),
         cmocka_unit_test(a_smaller_picture_is_scaled_by_whole_pixels),
         cmocka_unit_test(resize_shows_the_new_picture),
+        cmocka_unit_test(a_dense_screen_has_larger_text),
         cmocka_unit_test(help_draws_in_its_panel_only),
         cmocka_unit_test(status_line_and_error_keep_to_the_edges),
         cmocka_unit_test(tiny_windows_and_odd_text_are_survived),
