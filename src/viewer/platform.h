@@ -33,9 +33,8 @@ typedef struct vw_platform_ops {
     /** What the user's keyboard prints on that key ("w"), or NULL for keys that print nothing.
      */
     const char *(*key_label)(vw_platform *platform, int key);
-    /** A gamepad is connected: it has no events, so pump must be called again and again. NULL:
-     * never.
-     */
+    /** A gamepad is connected and the window has the keyboard: it has no events, so pump must be
+     * called again and again. NULL: never. */
     bool (*has_pad)(vw_platform *platform);
     /** Change the framebuffer; offscreen only, NULL elsewhere. False after adding an error. */
     bool (*resize)(vw_platform *platform, uint32_t width, uint32_t height, fl_diags *diags);

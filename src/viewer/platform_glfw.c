@@ -10,6 +10,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "viewer/pad.h"
 #include "viewer/platform.h"
 
 typedef struct platform_glfw {
@@ -18,9 +19,6 @@ typedef struct platform_glfw {
     GLFWgamepadstate pad; /* As last told. */
     bool has_keyboard;    /* A key was pressed. */
 } platform_glfw;
-
-#define DEAD_ZONE  0.15
-#define AXIS_STEPS 32.0 /* Finer than a thumb, and logs stay small. */
 
 enum { MODS = GLFW_MOD_SHIFT | GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER };
 
@@ -115,8 +113,11 @@ static void on_drop(GLFWwindow *window, int count, const char **paths)
 
 static void on_focus(GLFWwindow *window, int is_focused)
 {
-    if (!is_focused)
-        push(window, &(vw_event){.kind = VW_EVENT_FOCUS});
+    platform_glfw *self = glfwGetWindowUserPointer(window);
+    if (is_focused)
+        return;
+    vw_pad_forget_sticks(&self->pad);
+    push(window, &(vw_event){.kind = VW_EVENT_FOCUS});
 }
 
 static void on_iconify(GLFWwindow *window, int is_iconified)
@@ -141,43 +142,25 @@ static void destroy(vw_platform *platform)
     free(self);
 }
 
-/* -1 to 1 with a dead zone about rest, or 0 to 1 for triggers, which rest at -1. */
-static float axis_value(int axis, float raw)
-{
-    bool is_trigger =
-        axis == GLFW_GAMEPAD_AXIS_LEFT_TRIGGER || axis == GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER;
-    double value = is_trigger ? ((double)raw + 1.0) / 2.0 : (double)raw;
-    double size = fl_clamp((fabs(value) - DEAD_ZONE) / (1.0 - DEAD_ZONE), 0.0, 1.0);
-    return (float)(copysign(floor(size * AXIS_STEPS + 0.5), value) / AXIS_STEPS);
-}
-
-/* Of the first gamepad; without one everything is at rest. */
+/* The first gamepad, or none. */
 static void poll_pad(platform_glfw *self)
 {
-    GLFWgamepadstate now = {0}, raw;
-    for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; id++) {
-        if (!glfwGetGamepadState(id, &raw))
-            continue;
-        memcpy(now.buttons, raw.buttons, sizeof now.buttons);
-        for (int axis = 0; axis <= GLFW_GAMEPAD_AXIS_LAST; axis++)
-            now.axes[axis] = axis_value(axis, raw.axes[axis]);
-        break;
-    }
-    for (int axis = 0; axis <= GLFW_GAMEPAD_AXIS_LAST; axis++)
-        if (now.axes[axis] != self->pad.axes[axis])
-            push(self->window, &(vw_event){.kind = VW_EVENT_AXIS,
-                                           .code = axis,
-                                           .x = (double)now.axes[axis] + 0.0});
-    for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; button++)
-        if (now.buttons[button] != self->pad.buttons[button])
-            push(self->window,
-                 &(vw_event){.kind = VW_EVENT_PAD, .code = button, .action = now.buttons[button]});
-    self->pad = now;
+    GLFWgamepadstate raw;
+    bool is_there = false;
+    for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST && !is_there; id++)
+        is_there = glfwGetGamepadState(id, &raw);
+    vw_pad_tell(&self->pad, is_there ? &raw : NULL, &self->base.events);
+}
+
+static bool is_focused(vw_platform *platform)
+{
+    return glfwGetWindowAttrib(((platform_glfw *)platform)->window, GLFW_FOCUSED);
 }
 
 static bool has_pad(vw_platform *platform)
 {
-    (void)platform;
+    if (!is_focused(platform))
+        return false;
     for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; id++)
         if (glfwJoystickIsGamepad(id))
             return true;
@@ -192,7 +175,7 @@ static void pump(vw_platform *platform, double timeout_s)
         glfwWaitEvents();
     else
         glfwWaitEventsTimeout(timeout_s);
-    if (glfwGetWindowAttrib(((platform_glfw *)platform)->window, GLFW_FOCUSED))
+    if (is_focused(platform))
         poll_pad((platform_glfw *)platform);
 }
 

@@ -8,6 +8,8 @@
 #include <math.h>
 
 #include "viewer/keymap.h"
+#include "viewer/log.h"
+#include "viewer/pad.h"
 #include "viewer/words.h"
 
 static const struct {
@@ -177,6 +179,114 @@ static void a_gamepad_flies(void **unused)
     vw_session_close(&session);
 }
 
+/* What the pad says, by way of the log, to where the camera goes. */
+static void a_made_up_gamepad_says_what_a_real_one_would(void **unused)
+{
+    (void)unused;
+    enum { LX = GLFW_GAMEPAD_AXIS_LEFT_X, LY = GLFW_GAMEPAD_AXIS_LEFT_Y };
+    GLFWgamepadstate told = {0}, raw = {0};
+    raw.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] = raw.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] = -1.0f;
+    vw_event_queue queue = {0};
+    vw_event event;
+    vw_pad_tell(&told, NULL, &queue);
+    vw_pad_tell(&told, &raw, &queue);
+    /* Rest is a disk: worn sticks do not creep, and both axes of one together are not at rest. */
+    raw.axes[LX] = 0.1f;
+    raw.axes[LY] = -0.1f;
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 0);
+    raw.axes[LX] = 0.14f;
+    raw.axes[LY] = -0.9f;
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 2);
+    assert_true(vw_event_pop(&queue, &event) && event.code == LX && event.x == 4.0 / 32.0);
+    assert_true(vw_event_pop(&queue, &event) && event.code == LY && event.x == -28.0 / 32.0);
+    /* The same again is no news; nor is a tremble. */
+    raw.axes[LY] = -0.905f;
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 0);
+    /* Corners of square gates, broken numbers of drivers: never beyond 1. */
+    raw.axes[LX] = 1.0f;
+    raw.axes[LY] = 1.5f;
+    vw_pad_tell(&told, &raw, &queue);
+    while (vw_event_pop(&queue, &event))
+        assert_true(fabs(event.x) <= 1.0 && event.x > 0.5);
+    /* Triggers rest at -1. */
+    raw.axes[LX] = raw.axes[LY] = 0.0f;
+    raw.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] = 1.0f;
+    raw.buttons[GLFW_GAMEPAD_BUTTON_B] = GLFW_PRESS;
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 4);
+    for (int i = 0; i < 2; i++)
+        assert_true(vw_event_pop(&queue, &event) && event.x == 0.0 && !signbit(event.x));
+    assert_true(vw_event_pop(&queue, &event) && event.x == 1.0);
+    assert_true(vw_event_pop(&queue, &event) && event.kind == VW_EVENT_PAD &&
+                event.code == GLFW_GAMEPAD_BUTTON_B && event.action == GLFW_PRESS);
+    /* Another window had the keyboard: what is still pushed is told again, what is pressed not. */
+    vw_pad_forget_sticks(&told);
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 1);
+    assert_true(vw_event_pop(&queue, &event) && event.x == 1.0);
+    /* Unplugged: everything is let go. */
+    vw_pad_tell(&told, NULL, &queue);
+    assert_int_equal(queue.count, 2);
+    vw_event_queue_deinit(&queue);
+}
+
+/* The log of a made-up pad moves the camera to the same bytes as the pad did, whatever the pace at
+ * which it was asked. */
+static void a_gamepad_is_recorded(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    fl_camera cameras[3];
+    char *text = NULL;
+    size_t bytes = 0;
+    FILE *file = open_memstream(&text, &bytes);
+    vw_log_write_header(file, 96, 64, VIEWER_TEST_SCENE);
+    for (int run = 0; run < 3; run++) {
+        vw_session session;
+        open_session(&session, &options, VIEWER_TEST_SCENE);
+        GLFWgamepadstate told = {0}, raw = {0};
+        vw_event_queue queue = {0};
+        vw_event event;
+        for (uint64_t ms = 0; ms < 2000 && run < 2; ms += run ? 5 : 16) {
+            /* Told at the same times: between them it is only asked in vain. */
+            uint64_t phase = ms / 400;
+            raw.axes[GLFW_GAMEPAD_AXIS_LEFT_Y] = ms % 400 ? raw.axes[1] : -0.2f * (float)phase;
+            raw.axes[GLFW_GAMEPAD_AXIS_RIGHT_X] = ms % 400 ? raw.axes[2] : 0.25f * (float)phase;
+            vw_pad_tell(&told, &raw, &queue);
+            while (vw_event_pop(&queue, &event)) {
+                send(&session, &event, ms);
+                if (run == 0)
+                    vw_log_write_event(file, ms, &event);
+            }
+            vw_input_advance(&session.input, &session.state, ms);
+        }
+        if (run == 2) {
+            vw_log log;
+            fl_diags diags = {0};
+            vw_log_write_quit(file, 2000);
+            fclose(file);
+            assert_true(vw_log_parse(text, bytes, "pad.log", &log, &diags));
+            assert_true(log.entry_count > 8);
+            for (size_t i = 0; i < log.entry_count; i++)
+                if (log.entries[i].kind == VW_LOG_EVENT)
+                    send(&session, &log.entries[i].event, log.entries[i].ms);
+            vw_log_deinit(&log);
+        }
+        vw_input_advance(&session.input, &session.state, 2000);
+        cameras[run] = session.state.look.camera;
+        vw_event_queue_deinit(&queue);
+        vw_session_close(&session);
+    }
+    free(text);
+    assert_memory_equal(&cameras[0].center, &cameras[1].center, sizeof cameras[0].center);
+    assert_memory_equal(&cameras[0].center, &cameras[2].center, sizeof cameras[0].center);
+    assert_memory_equal(&cameras[0].direction, &cameras[2].direction, sizeof cameras[0].direction);
+    assert_true(cameras[0].direction.x > 0.1);
+}
+
 static int finish(void **unused)
 {
     (void)unused;
@@ -190,6 +300,8 @@ int main(void)
         cmocka_unit_test(no_chord_reaches_two_commands),
         cmocka_unit_test(keys_do_what_the_file_says),
         cmocka_unit_test(a_gamepad_flies),
+        cmocka_unit_test(a_made_up_gamepad_says_what_a_real_one_would),
+        cmocka_unit_test(a_gamepad_is_recorded),
     };
     return cmocka_run_group_tests(tests, make_folder, finish);
 }
