@@ -215,6 +215,7 @@ static void take_loaded(app *a)
     if (!vw_loading_take(a->loading, &scene, path, &a->diags))
         return;
     if (!scene.compiled || !vw_session_adopt(&a->session, path, &scene, &a->diags)) {
+        a->session.state.message_until_ms = 0; /* "reading" */
         show_error(a);
         return;
     }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "viewer/view.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -125,52 +126,64 @@ static void draw_message(vw_view *view, const vw_state *state, const char *messa
                     bright_ink, message);
 }
 
-/* Cut to `columns` characters, whole ones. */
-static void copy_line(const char *from, const char *end, uint32_t columns, char *out,
-                      size_t out_bytes)
+/* Where the row that begins at `from` ends, at most `columns` characters on. Messages go on in the
+ * next row, between words if there is a blank in the second half; lines that begin with a blank
+ * quote a file above a mark: both are cut. *out_next: where the next row begins; NULL: there is
+ * none. */
+static const char *row_end(const char *from, uint32_t columns, bool is_quote, const char **out_next)
 {
-    size_t length = 0;
-    uint32_t used = 0;
-    while (from < end && used < columns && length + 5 < out_bytes) {
+    const char *end = from, *blank = NULL;
+    for (uint32_t used = 0; *end && *end != '\n' && used < columns; used++) {
+        if (*end == ' ' && 2 * used >= columns)
+            blank = end;
         do
-            out[length++] = *from++;
-        while (from < end && ((unsigned char)*from & 0xC0) == 0x80 && length + 5 < out_bytes);
-        used++;
+            end++;
+        while (((unsigned char)*end & 0xC0) == 0x80);
     }
-    out[length] = 0;
+    const char *line_end = strchr(end, '\n');
+    if (!*end || *end == '\n' || is_quote) {
+        *out_next = line_end ? line_end + 1 : NULL;
+        return end;
+    }
+    end = *end != ' ' && blank ? blank : end;
+    *out_next = *end == ' ' ? end + 1 : end;
+    return end;
 }
 
 /* Lines of text in a panel at the top; wide: across the window, else as wide as the text. Sets
  * where the panel ends. */
-static void draw_lines(vw_view *view, const vw_state *state, const char *error, bool is_wide,
+static void draw_lines(vw_view *view, const vw_state *state, const char *text, bool is_wide,
                        vw_ink ink, double scale, double out_end[2])
 {
+    enum { ROWS_MAX = 64, ROW_BYTES = 512 };
+    struct {
+        const char *begin, *end;
+    } rows[ROWS_MAX];
     vw_cell cell = vw_overlay_cell(view->overlay, VW_FACE_NORMAL);
     double margin = floor(8.0 * scale), pad = floor(10.0 * scale);
-    uint32_t columns =
-        (uint32_t)fl_max(1.0, ((double)state->width - 2.0 * (margin + pad)) / cell.width);
-    uint32_t lines = 1, widest = 0;
-    for (const char *c = error, *begin = error; *c; c++) {
-        lines += *c == '\n';
-        if (*c == '\n')
-            begin = c + 1;
-        else
-            widest = fl_max_u32(widest, vw_text_columns(begin) - vw_text_columns(c) + 1);
+    uint32_t columns = (uint32_t)fl_clamp(
+        ((double)state->width - 2.0 * (margin + pad)) / cell.width, 1.0, ROW_BYTES / 4 - 1);
+    uint32_t count = 0, widest = 0;
+    bool is_quote = false;
+    for (const char *at = text; at && count < ROWS_MAX; count++) {
+        if (at == text || at[-1] == '\n')
+            is_quote = *at == ' ';
+        rows[count].begin = at;
+        rows[count].end = row_end(at, columns, is_quote, &at);
+        uint32_t used = vw_text_columns(rows[count].begin) - vw_text_columns(rows[count].end);
+        widest = fl_max_u32(widest, used);
     }
-    widest = fl_min_u32(widest, columns);
-    double height = lines * cell.height + 2.0 * floor(7.0 * scale);
+    double height = count * cell.height + 2.0 * floor(7.0 * scale);
     double width =
         is_wide ? (double)state->width - 2.0 * margin : (double)widest * cell.width + 2.0 * pad;
     vw_overlay_panel(view->overlay, margin, margin, width, height, 6.0 * scale, ink);
     out_end[0] = margin + width;
     out_end[1] = margin + height;
     double y = margin + floor(7.0 * scale);
-    for (const char *line = error; line; y += cell.height) {
-        char text[512];
-        const char *end = strchr(line, '\n');
-        copy_line(line, end ? end : line + strlen(line), columns, text, sizeof text);
-        vw_overlay_text(view->overlay, VW_FACE_NORMAL, margin + pad, y, bright_ink, text);
-        line = end ? end + 1 : NULL;
+    for (uint32_t i = 0; i < count; i++, y += cell.height) {
+        char row[ROW_BYTES];
+        snprintf(row, sizeof row, "%.*s", (int)(rows[i].end - rows[i].begin), rows[i].begin);
+        vw_overlay_text(view->overlay, VW_FACE_NORMAL, margin + pad, y, bright_ink, row);
     }
 }
 

@@ -285,7 +285,7 @@ void vw_words_title(const vw_state *state, const fl_progress *progress, const ch
                  floor(100.0 * vw_words_done(state, progress)), name);
 }
 
-/* docs/strips/NAME.log makes docs/strips/NAME.jpg (tools/make-strips). */
+/* docs/strips/NAME.log, or else NAME.sh, makes docs/strips/NAME.jpg (tools/make-strips). */
 static void add_strips(buffer *b)
 {
     static const struct {
@@ -315,12 +315,23 @@ static void add_strips(buffer *b)
         {"stress",
          "The stress lens (J): against double, the scene a thousandth of its size, a million "
          "times, and through a pinhole. Violet changed in last bits only, orange visibly."},
+        {"undo", "Flown aside, the lens opened; the lens taken back (Ctrl+Z), the flight too, and "
+                 "that done again (Ctrl+Y)."},
+        {"keys", "Other keys (`--keys`, [file](strips/keys.keys)): the help names them, and the "
+                 "number pad flies."},
+        {"gamepad", "A gamepad: the left stick flies, the right one turns, a bumper opens the "
+                    "lens, A focuses at the middle."},
+        {"live", "The scene is saved with another colour; with a mistake, which is shown over the "
+                 "last good picture; and mended."},
     };
     add(b, "\n## In pictures\n\nEach strip is made by a log of input, which `firstlight replay` "
-           "plays (tools/make-strips).\n");
-    for (size_t i = 0; i < FL_COUNT_OF(strips); i++)
-        add(b, "\n%s ([log](strips/%s.log))\n\n![%s](strips/%s.jpg)\n", strips[i].caption,
-            strips[i].name, strips[i].name, strips[i].name);
+           "plays, the last one by a\nscript with a real window (tools/make-strips).\n");
+    for (size_t i = 0; i < FL_COUNT_OF(strips); i++) {
+        bool is_live = strcmp(strips[i].name, "live") == 0;
+        add(b, "\n%s ([%s](strips/%s.%s))\n\n![%s](strips/%s.jpg)\n", strips[i].caption,
+            is_live ? "script" : "log", strips[i].name, is_live ? "sh" : "log", strips[i].name,
+            strips[i].name);
+    }
 }
 
 size_t vw_controls_markdown(char *out, size_t out_bytes)

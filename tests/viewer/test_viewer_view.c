@@ -147,8 +147,8 @@ static size_t count_changed(const scene *s, double x0, double y0, double x1, dou
     return inside;
 }
 
-/* Twice the density in twice as many pixels: the same layout, twice as large but for whole pixels of
- * letters. */
+/* Twice the density in twice as many pixels: the same layout, twice as large but for whole pixels
+ * of letters. */
 static void a_dense_screen_has_larger_text(void **unused)
 {
     (void)unused;
@@ -214,6 +214,32 @@ static void status_line_and_error_keep_to_the_edges(void **unused)
     inside = count_changed(&s, 0, 0, 640, 100, &outside);
     assert_true(inside > 1000);
     assert_int_equal(outside, 0);
+    close_scene(&s);
+}
+
+/* Messages go on in the next row; what quotes a file is cut, so that the mark stays below it. */
+static void long_errors_are_read_in_narrow_windows(void **unused)
+{
+    (void)unused;
+    static const char *const texts[] = {
+        "a.scene:1:2: error: unknown key 'radios' in 'Sphere'; did you mean 'radius'?\n"
+        "   37 |     Sphere { center -1.1 0.7 0.4 radios 0.7 }\n"
+        "abcdefghijklmnopqrstuvwxyz-abcdefghijklmnopqrstuvwxyz",
+        "a.scene:1:2: error: unknown key\n'radios' in 'Sphere'; did you\nmean 'radius'?\n"
+        "   37 |     Sphere { center -1.1 \nabcdefghijklmnopqrstuvwxyz-abcdef\n"
+        "ghijklmnopqrstuvwxyz"};
+    scene s;
+    OPEN_OR_SKIP(&s, 300, 200, 300, 200);
+    size_t bytes = (size_t)300 * 200 * 4;
+    uint8_t *first = malloc(bytes);
+    assert_non_null(first);
+    for (int i = 0; i < 2; i++) {
+        assert_true(
+            vw_view_draw(s.view, &s.state, &s.progress, &(vw_texts){.error = texts[i]}, &s.diags));
+        assert_true(vw_view_read(s.view, i ? s.shown : first));
+    }
+    assert_memory_equal(first, s.shown, bytes);
+    free(first);
     close_scene(&s);
 }
 
@@ -290,6 +316,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_dense_screen_has_larger_text),
         cmocka_unit_test(help_draws_in_its_panel_only),
         cmocka_unit_test(status_line_and_error_keep_to_the_edges),
+        cmocka_unit_test(long_errors_are_read_in_narrow_windows),
         cmocka_unit_test(tiny_windows_and_odd_text_are_survived),
         cmocka_unit_test(a_broken_shader_is_an_error),
         cmocka_unit_test(unknown_platform_is_named),
