@@ -204,7 +204,9 @@ static void load_scene(app *a, const char *path)
         show_error(a);
         return;
     }
-    vw_state_say(&a->session.state, "reading");
+    const char *slash = strrchr(path, '/');
+    vw_state_say(&a->session.state, "reading %s", slash ? slash + 1 : path);
+    a->session.state.message_until_ms = UINT64_MAX; /* Until it is read. */
     vw_loading_ask(a->loading, path);
 }
 

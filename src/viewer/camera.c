@@ -64,6 +64,22 @@ void vw_camera_toggle_orbit(vw_state *state)
     state->mode = VW_MODE_ORBIT;
 }
 
+bool vw_camera_orbit_at(vw_state *state, fl_vec3 point)
+{
+    const fl_camera *camera = &state->look.camera;
+    fl_vec3 way = fl_v3_sub(point, camera->center);
+    double distance = fl_v3_length(way);
+    if (!(distance > 1e-9 * state->scene_scale) || !isfinite(distance))
+        return false;
+    fl_vec3 across = fl_v3_cross(fl_v3_scale(way, 1.0 / distance), fl_v3_normalize(camera->up));
+    if (!(fl_v3_length(across) > POLE_SINE))
+        return false;
+    state->pivot = point;
+    state->mode = VW_MODE_ORBIT;
+    aim_at_pivot(state);
+    return true;
+}
+
 /* Turn `forward` by yaw about the camera's up, then by pitch about its right, stopping short of the
  * pole. */
 static fl_vec3 turn(const fl_camera *camera, double yaw_rad, double pitch_rad)

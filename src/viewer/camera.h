@@ -37,6 +37,10 @@ void vw_camera_dolly(vw_state *state, double dy_px);
  * middle. */
 void vw_camera_toggle_orbit(vw_state *state);
 
+/** Orbit `point`: the camera turns to it. False: it stands in it, or would look along its own up;
+ * nothing changed. */
+bool vw_camera_orbit_at(vw_state *state, fl_vec3 point);
+
 /** Distance ahead at which pan and dolly are true to the cursor: the focus if it is sensible, else
  * the scene's middle. */
 double vw_camera_working_depth(const vw_state *state);

@@ -125,6 +125,13 @@ vw_dirty vw_run_orbit(vw_state *state, vw_amount amount)
     return VW_DIRTY_CAMERA;
 }
 
+vw_dirty vw_run_orbit_at(vw_state *state, vw_amount amount)
+{
+    (void)state;
+    (void)amount;
+    return VW_DIRTY_ORBIT_AT;
+}
+
 vw_dirty vw_run_reset(vw_state *state, vw_amount amount)
 {
     (void)amount;

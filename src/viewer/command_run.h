@@ -14,7 +14,7 @@ typedef void vw_value_fn(const vw_state *state, char out[VW_VALUE_MAX]);
 /* Moving. */
 vw_run_fn vw_run_forward, vw_run_strafe, vw_run_rise, vw_run_speed, vw_run_look, vw_run_pan,
     vw_run_dolly;
-vw_run_fn vw_run_orbit, vw_run_reset, vw_run_print, vw_run_paste, vw_run_undo, vw_run_redo,
+vw_run_fn vw_run_orbit, vw_run_orbit_at, vw_run_reset, vw_run_print, vw_run_paste, vw_run_undo, vw_run_redo,
     vw_run_recall, vw_run_store;
 /* Lens. */
 vw_run_fn vw_run_focus, vw_run_focus_at, vw_run_focus_through, vw_run_assist, vw_run_rack,

@@ -48,6 +48,8 @@ const vw_command vw_commands[] = {
      "move closer, away", vw_run_dolly, NULL},
     {"orbit", VW_GROUP_MOVE, {KEY(0, TAB, 1)}, false, CAMERA,
      "fly or orbit", vw_run_orbit, vw_value_mode},
+    {"orbit-at", VW_GROUP_MOVE, {KEY(0, ENTER, 1)}, false, VW_DIRTY_ORBIT_AT,
+     "turn to what is under the cursor, orbit it", vw_run_orbit_at, NULL},
     {"reset", VW_GROUP_MOVE, {KEY(0, R, 1)}, false, CAMERA | TONEMAP | LIMITS,
      "back to the scene's camera and settings", vw_run_reset, NULL},
     {"print", VW_GROUP_MOVE, {KEY(0, C, 1)}, false, VW_DIRTY_PRINT,

@@ -177,6 +177,15 @@ static void forget_parts(vw_session *session)
     free(unseen);
 }
 
+/* A third of the light in a rectangle (x, y, width, height). */
+static void dim(uint8_t *rgba, uint32_t row_pixels, const uint32_t rect[4])
+{
+    for (uint32_t y = rect[1]; y < rect[1] + rect[3]; y++)
+        for (size_t i = 4 * ((size_t)y * row_pixels + rect[0]), end = i + (size_t)4 * rect[2];
+             i < end; i++)
+            rgba[i] = i % 4 == 3 ? 255 : rgba[i] / 3;
+}
+
 /* A region begins: keep what is around it, dimmed. Memory is no reason to fail: it is only shown.
  */
 static void keep_backdrop(vw_session *session)
@@ -188,7 +197,14 @@ static void keep_backdrop(vw_session *session)
         session->backdrop = NULL;
         return;
     }
-    if (session->backdrop && session->backdrop_width == width && session->backdrop_height == height)
+    uint32_t *last = session->backdrop_rect;
+    bool is_kept =
+        session->backdrop && session->backdrop_width == width && session->backdrop_height == height;
+    /* Another region: the last one's picture becomes part of what is around it. */
+    if (is_kept && memcmp(last, rect, sizeof rect) != 0)
+        dim(session->backdrop, width, last);
+    memcpy(last, rect, sizeof rect);
+    if (is_kept)
         return;
     free(session->backdrop);
     session->backdrop = calloc((size_t)width * height, 4);
@@ -196,8 +212,11 @@ static void keep_backdrop(vw_session *session)
     session->backdrop_height = height;
     bool has_whole = session->progress.width == width && session->progress.height == height &&
                      session->revision != 0;
-    for (size_t i = 0; session->backdrop && i < (size_t)width * height * 4; i++)
-        session->backdrop[i] = i % 4 == 3 ? 255 : has_whole ? session->rgba[i] / 3 : 0;
+    if (!session->backdrop)
+        return;
+    if (has_whole)
+        memcpy(session->backdrop, session->rgba, (size_t)width * height * 4);
+    dim(session->backdrop, width, (const uint32_t[4]){0, 0, width, height});
 }
 
 const uint8_t *vw_session_window(vw_session *session, uint32_t *out_width, uint32_t *out_height)

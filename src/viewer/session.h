@@ -25,7 +25,7 @@ typedef struct vw_session {
     vw_input input;
     vw_keymap *keymap; /**< Owned; NULL: the table's. */
     fl_render *render;
-    fl_refine *refine; /**< Of a scene that was compiled quickly; else NULL. */
+    fl_refine *refine;    /**< Of a scene that was compiled quickly; else NULL. */
     fl_progress progress; /**< As of the last refresh. */
     uint8_t *rgba;        /**< The picture shown: progress.width x progress.height. Owned. */
     size_t rgba_bytes;
@@ -33,8 +33,8 @@ typedef struct vw_session {
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
     uint8_t *backdrop;      /**< Around a region: the last whole picture, dimmed. Owned. */
-    uint32_t backdrop_width, backdrop_height;
-    vw_mix mix; /**< Of state.is_mixing. */
+    uint32_t backdrop_width, backdrop_height, backdrop_rect[4]; /**< rect: of the region in it. */
+    vw_mix mix;                                                 /**< Of state.is_mixing. */
     vw_history history;
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */

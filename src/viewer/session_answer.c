@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "io/state_text.h"
+#include "viewer/camera.h"
 #include "viewer/session.h"
 
 static int compare_doubles(const void *a, const void *b)
@@ -67,6 +68,29 @@ vw_dirty vw_session_pick_through(vw_session *session, fl_diags *diags)
     return dirty;
 }
 
+static vw_dirty orbit_at(vw_session *session, fl_diags *diags)
+{
+    vw_state *state = &session->state;
+    fl_params params;
+    fl_frame *frame = frame_of(session, &params, diags);
+    if (!frame)
+        return VW_DIRTY_NONE;
+    fl_pick pick = {0};
+    double x, y;
+    vw_state_origin(state, &params, &x, &y);
+    if (!fl_trace_pick(frame, x + state->cursor_x, y + state->cursor_y, &pick))
+        fl_out_of_memory(diags, "picking");
+    fl_frame_release(frame);
+    if (!pick.is_hit || !vw_camera_orbit_at(state, pick.position)) {
+        vw_state_say(state, pick.is_hit ? "that cannot be orbited: it lies along the camera's up"
+                                        : "nothing there to orbit");
+        return VW_DIRTY_WINDOW;
+    }
+    state->rack_left = 0;
+    vw_state_say(state, "orbit at %.4g", state->look.camera.focus);
+    return VW_DIRTY_CAMERA;
+}
+
 static vw_dirty take_camera(vw_state *state, const fl_camera *camera)
 {
     uint32_t width = state->look.camera.width, height = state->look.camera.height;
@@ -123,7 +147,10 @@ vw_dirty vw_session_paste(vw_session *session, const char *text)
     }
     vw_dirty dirty = take_camera(state, &camera);
     bool has_lights = read_lights(text, &state->look);
-    vw_state_say(state, has_lights ? "camera and lights pasted" : "camera pasted");
+    vw_state_say(state, "%s",
+                 has_lights                 ? "camera and lights pasted"
+                 : strstr(text, "Lights {") ? "camera pasted; its lights do not fit this scene"
+                                            : "camera pasted");
     vw_history_note(&session->history, state, NULL, false);
     return dirty;
 }
@@ -196,6 +223,8 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         all |= vw_session_pick(session, diags);
     if (dirty & VW_DIRTY_PICK_THROUGH)
         all |= vw_session_pick_through(session, diags);
+    if (dirty & VW_DIRTY_ORBIT_AT)
+        all |= orbit_at(session, diags);
     if (dirty & VW_DIRTY_RECALL)
         all |= recall(session);
     if (dirty & VW_DIRTY_STORE)

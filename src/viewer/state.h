@@ -105,9 +105,10 @@ typedef enum vw_dirty {
     VW_DIRTY_REDO = 1 << 12,
     VW_DIRTY_RECALL = 1 << 13, /**< The camera of bookmark `slot`. */
     VW_DIRTY_STORE = 1 << 14,
-    VW_DIRTY_PASTE = 1 << 15, /**< The camera that the clipboard holds. */
-    VW_DIRTY_PIN = 1 << 16,   /**< Keep or drop the picture as it is now. */
-    VW_DIRTY_RAYS = 1 << 17,  /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
+    VW_DIRTY_PASTE = 1 << 15,    /**< The camera that the clipboard holds. */
+    VW_DIRTY_PIN = 1 << 16,      /**< Keep or drop the picture as it is now. */
+    VW_DIRTY_ORBIT_AT = 1 << 18, /**< Orbit what stands at the cursor. */
+    VW_DIRTY_RAYS = 1 << 17, /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
     /** The colour of the selected light; vw_session_answer turns it into TONEMAP or CAMERA. */
     VW_DIRTY_LIGHT = 1 << 24
 } vw_dirty;

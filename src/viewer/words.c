@@ -37,7 +37,9 @@ static const struct {
     {GLFW_KEY_LEFT_BRACKET, "["}, {GLFW_KEY_RIGHT_BRACKET, "]"}, {GLFW_KEY_COMMA, ","},
     {GLFW_KEY_PERIOD, "."},       {GLFW_KEY_MINUS, "-"},         {GLFW_KEY_EQUAL, "="},
     {GLFW_KEY_TAB, "Tab"},        {GLFW_KEY_ESCAPE, "Esc"},      {GLFW_KEY_PAGE_UP, "PgUp"},
-    {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_SPACE, "Space"},
+    {GLFW_KEY_PAGE_DOWN, "PgDn"}, {GLFW_KEY_SPACE, "Space"},     {GLFW_KEY_ENTER, "Enter"},
+    {GLFW_KEY_UP, "Up"},          {GLFW_KEY_DOWN, "Down"},       {GLFW_KEY_LEFT, "Left"},
+    {GLFW_KEY_RIGHT, "Right"},
 };
 
 static void key_label(vw_platform *platform, int key, char out[16])

@@ -13,14 +13,15 @@ page() { # PAGE TOPIC
 page "$1" "$2/docs/firstlight.1" man
 page "$1" "$2/docs/scene-format.md" scene-markdown
 page "$1" "$2/docs/controls.md" keys
-# Every strip of the controls has its log and its picture, small enough to commit, and none is forgotten.
-for log in "$2"/docs/strips/*.log; do
-    name=$(basename "$log" .log)
+# Every strip of the controls has its log or script and its picture, small enough to commit, and none is forgotten.
+for source in "$2"/docs/strips/*.log "$2"/docs/strips/*.sh; do
+    name=$(basename "$source" .log)
+    name=${name%.sh}
     grep -q "(strips/$name.jpg)" "$2/docs/controls.md" || { echo "FAIL: docs/controls.md does not show $name"; status=1; }
     [ "$(wc -c <"$2/docs/strips/$name.jpg")" -le 60000 ] || { echo "FAIL: no strip $name of at most 60000 bytes"; status=1; }
 done
-[ "$(grep -c '](strips/.*jpg)' "$2/docs/controls.md")" = "$(ls "$2"/docs/strips/*.log | wc -l)" ] || {
-    echo "FAIL: docs/controls.md shows a strip that has no log"
+[ "$(grep -c '](strips/.*jpg)' "$2/docs/controls.md")" = "$(ls "$2"/docs/strips/*.log "$2"/docs/strips/*.sh | wc -l)" ] || {
+    echo "FAIL: docs/controls.md shows a strip that has no log or script"
     status=1
 }
 [ $status = 0 ] && echo "4 passed, 0 failed"

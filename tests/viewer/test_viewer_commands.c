@@ -147,6 +147,7 @@ static const struct {
     {"pan", POSE, VW_DIRTY_CAMERA},
     {"dolly", POSE, VW_DIRTY_CAMERA},
     {"orbit", MODE | MESSAGE, VW_DIRTY_CAMERA},
+    {"orbit-at", 0, VW_DIRTY_ORBIT_AT},
     {"reset", 0, VW_DIRTY_CAMERA | VW_DIRTY_TONEMAP | VW_DIRTY_LIMITS},
     {"print", MESSAGE, VW_DIRTY_PRINT},
     {"paste", 0, VW_DIRTY_PASTE},

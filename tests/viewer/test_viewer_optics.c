@@ -235,9 +235,50 @@ static int remove_folder(void **unused)
     return rmdir(folder);
 }
 
+/* Enter over the mirror ball: it comes to the middle, and stays there, sharp, while it is orbited.
+ */
+static void what_is_under_the_cursor_is_orbited(void **unused)
+{
+    (void)unused;
+    char path[256];
+    write_file("optics.txt",
+               "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30\n"
+               "  width 100 height 100 aperture 0.1 focus 2 }\n"
+               "Lights { numLights 1 PointLight { position 0 4 4 color 1 1 1 } }\n"
+               "Materials { numMaterials 1 Material { diffuseColor 1 1 1 } }\n"
+               "Group { numObjects 1 MaterialIndex 0 Sphere { center 0.8 0 0 radius 0.1 } }",
+               path);
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, path);
+    vw_state *state = &session.state;
+    vw_event nowhere = {.kind = VW_EVENT_CURSOR, .x = 10.0, .y = 10.0};
+    send(&session, &nowhere, 10);
+    vw_look before = state->look;
+    assert_false(tap(&session, GLFW_KEY_ENTER, 0, 20) & VW_DIRTY_CAMERA);
+    assert_true(vw_look_is_same(&before, &state->look));
+    /* 5 tan 15 degrees are 50 pixels. */
+    double x_px = 50.0 + 50.0 * 0.8 / (5.0 * 0.26794919243112270);
+    vw_event there = {.kind = VW_EVENT_CURSOR, .x = x_px, .y = 50.0};
+    send(&session, &there, 30);
+    assert_true(tap(&session, GLFW_KEY_ENTER, 0, 40) & VW_DIRTY_CAMERA);
+    assert_int_equal(state->mode, VW_MODE_ORBIT);
+    fl_vec3 pivot = state->pivot;
+    assert_true(fabs(fl_v3_length(fl_v3_sub(pivot, fl_v3(0.8, 0, 0))) - 0.1) < 1e-5);
+    for (int i = 0; i < 2; i++) {
+        const fl_camera *camera = &state->look.camera;
+        fl_vec3 seen = fl_v3_mad(camera->center, camera->direction, camera->focus);
+        assert_true(fl_v3_length(fl_v3_sub(seen, pivot)) < 1e-9);
+        vw_camera_look(state, 30.0, 10.0);
+    }
+    assert_false(state->look.camera.center.x == before.camera.center.x);
+    vw_session_close(&session);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_under_the_cursor_is_orbited),
         cmocka_unit_test(focus_is_found_in_mirrors_and_glass),
         cmocka_unit_test(limits_of_sharpness_are_where_the_blur_is_a_pixel),
         cmocka_unit_test(what_stands_behind_pixels_is_what_a_pick_finds),

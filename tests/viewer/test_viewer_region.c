@@ -95,6 +95,36 @@ static void a_region_is_part_of_the_whole(void **unused)
     vw_session_close(&session);
 }
 
+static void after_another_region_the_first_is_dimmed_too(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    fl_diags diags = {0};
+    fl_progress progress;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    free(film_of(&session, 1, &progress));
+    assert_true(vw_session_refresh(&session, &diags));
+    static const double corners[2][4] = {{10, 10, 30, 30}, {50, 20, 80, 50}};
+    for (int i = 0; i < 2; i++) {
+        const double *c = corners[i];
+        drag(&session, c[0], c[1], c[2], c[3], 100 + 100 * (uint64_t)i);
+        free(film_of(&session, 1, &progress));
+        assert_true(vw_session_refresh(&session, &diags));
+        uint32_t width, height;
+        const uint8_t *window = vw_session_window(&session, &width, &height);
+        assert_int_equal(width, 96);
+        for (uint32_t y = 0; y < 64; y++)
+            for (uint32_t x = 0; x < 96; x++) {
+                bool is_inside = x >= c[0] && x <= c[2] && y >= c[1] && y <= c[3];
+                const uint8_t *pixel = window + 4 * (96 * y + x);
+                assert_true(is_inside || (pixel[0] < 86 && pixel[1] < 86 && pixel[2] < 86));
+                assert_int_equal(pixel[3], 255);
+            }
+    }
+    vw_session_close(&session);
+}
+
 static void a_region_survives_any_window(void **unused)
 {
     (void)unused;
@@ -131,6 +161,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_region_is_part_of_the_whole),
+        cmocka_unit_test(after_another_region_the_first_is_dimmed_too),
         cmocka_unit_test(a_region_survives_any_window),
     };
     return cmocka_run_group_tests(tests, make_folder, finish);
