@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/study_write.h"
 #include "io/files.h"
@@ -150,12 +151,17 @@ static void print_targets(FILE *file, const study_report *report)
     fputs("</table>\n", file);
 }
 
-static void print_plot(FILE *file, const study_report *report, const char *name, const char *alt)
+/* A plot under its heading, if it was made: one without curves is not. */
+static void print_plot(FILE *file, const study_report *report, const char *heading,
+                       const char *name, const char *alt)
 {
-    char svg[STUDY_NAME_BYTES + 16];
-    if (!report->has_plots)
-        return;
+    char svg[STUDY_NAME_BYTES + 16], path[4096 + 64];
     snprintf(svg, sizeof svg, "%s.svg", name);
+    snprintf(path, sizeof path, "%s/%s", report->dir, svg);
+    if (!report->has_plots || access(path, R_OK) != 0)
+        return;
+    if (heading)
+        fprintf(file, "<h2>%s</h2>\n", heading);
     fputs("<p>", file);
     print_picture(file, report, svg, "svg+xml", alt);
     fputs("</p>\n", file);
@@ -228,7 +234,7 @@ static void print_knob(FILE *file, const study_report *report, study_knob knob)
         if (s->plan.configs[i].knob == knob)
             print_knob_row(file, report, knob, i);
     fputs("</table></div>\n", file);
-    print_plot(file, report, plot, study_knob_names[knob]);
+    print_plot(file, report, NULL, plot, study_knob_names[knob]);
 }
 
 /* --- All figures ------------------------------------------------------------------------------ */
@@ -350,14 +356,13 @@ static void fill_page(FILE *file, const void *context)
     const study_report *report = context;
     print_head(file, report);
     print_targets(file, report);
-    print_plot(file, report, "error-cpu", "error against CPU time");
+    print_plot(file, report, NULL, "error-cpu", "error against CPU time");
     fputs("<h2>What each knob costs and buys</h2>\n", file);
     for (study_knob knob = STUDY_BASELINE + 1; knob < STUDY_KNOB_COUNT; knob++)
         print_knob(file, report, knob);
-    fputs("<h2>Noise against samples</h2>\n", file);
-    print_plot(file, report, "noise-samples", "noise against samples");
-    fputs("<h2>How far predictions are to be trusted</h2>\n", file);
-    print_plot(file, report, "predicted", "predicted over true error");
+    print_plot(file, report, "Noise against samples", "noise-samples", "noise against samples");
+    print_plot(file, report, "How far predictions are to be trusted", "predicted",
+               "predicted over true error");
     print_thumbnails(file, report);
     print_table(file, report);
     print_method(file, report);

@@ -196,7 +196,7 @@ static void print_plot(FILE *file, const study_report *report, const plot *p)
     curve curves[STUDY_CONFIGS_MAX];
     span x = {0}, y = {0};
     uint32_t count = find_curves(report, p, curves, &x, &y);
-    if (count < (p->y == PREDICTED ? 1u : 2u))
+    if (count < (p->x == SAMPLES ? 1u : 2u)) /* A knob's curve wants one to compare with. */
         return;
     if (p->is_linear)
         y = (span){0.4, 1.8};

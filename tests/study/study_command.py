@@ -117,6 +117,8 @@ def noiseless(folder):
     done = subprocess.run(command("furnace.txt", out, "--size", "16x16", "--samples", "8", "--repeats", "2", "--quiet"),
                           stderr=subprocess.PIPE, text=True)
     expect(done.returncode == 0 and done.stderr == "", "a scene without noise is no trouble for the plots")
+    with open(os.path.join(out, "index.html"), encoding="utf-8") as file:
+        expect(not re.search(r"</h2>\s*<h2>", file.read()), "no heading stands over nothing")
 
 
 def main():
