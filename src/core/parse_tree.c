@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "core/parse_tree.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -94,7 +95,8 @@ static void parse_stand_in(fl_tree_parser *p, fl_node *node)
             continue;
         double *numbers = fl_tree_alloc_numbers(p, count);
         for (uint32_t i = 0; numbers && i < count; i++) {
-            if (!fl_token_number(&p->token, &numbers[i]) || !isfinite(numbers[i]))
+            if (!fl_token_number(&p->token, &numbers[i]) ||
+                !(fabs(numbers[i]) <= (double)FLT_MAX)) /* as a material's own keys */
                 count = 0;
             else
                 fl_tree_advance(p);
