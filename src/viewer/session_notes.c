@@ -141,8 +141,12 @@ void vw_session_notes(vw_session *session, char *out, size_t out_bytes)
     fl_params params;
     vw_state_params(state, &session->scene.params, &params);
     uint32_t region[4];
-    if (vw_state_region(state, region))
-        line(&l, "region %u x %u at %u, %u", region[2], region[3], region[0], region[1]);
+    if (vw_state_region(state, region)) {
+        char keys[VW_KEYS_MAX];
+        vw_words_keys(vw_command_named("region"), state->keymap, NULL, keys);
+        line(&l, "region %u x %u at %u, %u; tap %s for all", region[2], region[3], region[0],
+             region[1], keys[0] ? keys : "its key");
+    }
     if (state->is_mixing)
         line(&l, "preview of light %u", state->light + 1);
     if (state->layer != VW_LAYER_BEAUTY)
