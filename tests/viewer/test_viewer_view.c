@@ -155,7 +155,7 @@ static void a_dense_screen_has_larger_text(void **unused)
     double box[2][4];
     for (uint32_t i = 0; i < 2; i++) {
         scene s;
-        OPEN_OR_SKIP(&s, 900 << i, 700 << i, 900 << i, 700 << i);
+        OPEN_OR_SKIP(&s, 900u << i, 700u << i, 900u << i, 700u << i);
         vw_event event = {.kind = VW_EVENT_SCALE, .x = 1.0 + i};
         vw_input input = {0};
         assert_int_equal(vw_input_event(&input, &s.state, &event, 0), VW_DIRTY_WINDOW);
