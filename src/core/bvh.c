@@ -3,40 +3,20 @@
  * Three steps. The top: ranges are split in rounds, those of a round side by side, until they are
  * small. Subtrees: each small range is split down to leaves by one thread, and its binary tree
  * folded into nodes of eight. Last the top is folded in the same way, and all put together.
- *
- * Folding chooses, among all ways to leave out nodes of the binary tree, the one whose nodes have
- * the least area in all: a walk visits the fewest.
  */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/bvh_split.h"
+#include "core/bvh_pair.h"
 
 enum {
-    SAH_DEPTH_MAX = 56, /* Deeper, ranges are halved by count: 28 more levels reach any size. */
-    PIECE_ITEMS = 4096, /* Ranges up to this size are split by one thread. */
+    PIECE_ITEMS = 4096,      /* Ranges up to this size are split by one thread. */
     ITEM_COUNT_MAX = 1 << 28 /* Leaf indices have 28 bits. */
 };
 
-_Static_assert((FL_BVH_WIDTH - 1) * (SAH_DEPTH_MAX + 28) + 1 <= FL_BVH_STACK_MAX,
+_Static_assert((FL_BVH_WIDTH - 1) * (FL_BVH_SAH_DEPTH_MAX + 28) + 1 <= FL_BVH_STACK_MAX,
                "stack too small");
-
-/* A node of the binary tree, with its cheapest forms. */
-typedef struct pair {
-    wide_box box;
-    uint32_t first, count;           /* Of items. */
-    uint32_t left, right;            /* left FL_NONE: not split. */
-    float cost[FL_BVH_WIDTH + 1];    /* [n]: area of all nodes, as n children of another at most. */
-    uint8_t share[FL_BVH_WIDTH + 1]; /* [n]: how many of the n come from the left; 0: as n - 1. */
-    uint8_t own_left, own_right;     /* Children as a node of its own. */
-} pair;
-
-/* Binary nodes, children behind their parents. */
-typedef struct pairs {
-    pair *at;
-    uint32_t count, capacity;
-} pairs;
 
 typedef struct pair_ref {
     const pairs *in;
@@ -94,82 +74,11 @@ typedef struct builder {
     fl_bvh *out;
 } builder;
 
-static bool reserve(void *array, uint32_t *capacity, uint32_t needed, size_t item_bytes)
-{
-    void *old;
-    memcpy(&old, array, sizeof old);
-    if (needed <= *capacity)
-        return true;
-    uint32_t grown = fl_max_u32(2 * *capacity, fl_max_u32(needed, 64));
-    void *moved = realloc(old, grown * item_bytes);
-    if (!moved)
-        return false;
-    memcpy(array, &moved, sizeof moved);
-    *capacity = grown;
-    return true;
-}
-
-/* --- Binary trees ---------------------------------------------------------------------------- */
-
-static uint32_t add_pair(pairs *p, const range *items)
-{
-    if (!reserve(&p->at, &p->capacity, p->count + 1, sizeof *p->at))
-        return FL_NONE;
-    p->at[p->count] = (pair){.box = items->box,
-                             .first = items->first,
-                             .count = items->count,
-                             .left = FL_NONE,
-                             .right = FL_NONE};
-    return p->count++;
-}
-
-/* Split down to leaves; returns the root or FL_NONE. Depth is bounded, so recursion is. */
-static uint32_t grow(const builder *b, pairs *p, const range *items, uint32_t depth)
-{
-    range left, right;
-    uint32_t k = add_pair(p, items);
-    if (k == FL_NONE || items->count <= FL_BVH_WIDTH)
-        return k;
-    fl_bvh_split(b->items, items, b->in->are_packed, depth >= SAH_DEPTH_MAX, &left, &right);
-    uint32_t l = grow(b, p, &left, depth + 1);
-    uint32_t r = l == FL_NONE ? FL_NONE : grow(b, p, &right, depth + 1);
-    if (r == FL_NONE)
-        return FL_NONE;
-    p->at[k].left = l;
-    p->at[k].right = r;
-    return k;
-}
-
-/* The cheapest forms of a pair from those of its halves. */
-static void fold(const pairs *p, pair *whole)
-{
-    if (whole->left == FL_NONE)
-        return;
-    const float *l = p->at[whole->left].cost, *r = p->at[whole->right].cost;
-    float best = INFINITY;
-    for (uint8_t n = 2; n <= FL_BVH_WIDTH; n++) {
-        for (uint8_t k = 1; k < n; k++)
-            if (l[k] + r[n - k] < best) {
-                best = l[k] + r[n - k];
-                whole->share[n] = k;
-                whole->own_left = k;
-                whole->own_right = (uint8_t)(n - k);
-            }
-        whole->cost[n] = best;
-    }
-    whole->cost[1] = best + box_half_area(&whole->box);
-    for (int n = 2; n <= FL_BVH_WIDTH; n++)
-        if (whole->cost[1] <= whole->cost[n]) {
-            whole->cost[n] = whole->cost[1];
-            whole->share[n] = 0;
-        }
-}
-
 /* --- Nodes of eight -------------------------------------------------------------------------- */
 
 static uint32_t add_node(tree *t)
 {
-    if (!reserve(&t->nodes, &t->node_capacity, t->node_count + 1, sizeof *t->nodes))
+    if (!fl_bvh_reserve(&t->nodes, &t->node_capacity, t->node_count + 1, sizeof *t->nodes))
         return FL_NONE;
     fl_bvh_node *node = &t->nodes[t->node_count];
     memset(node, 0, sizeof *node);
@@ -185,8 +94,8 @@ static uint32_t add_node(tree *t)
 
 static uint32_t add_leaf(tree *t, const item *items, uint32_t count)
 {
-    if (!reserve(&t->leaf_items, &t->leaf_capacity, t->leaf_count + 1,
-                 FL_BVH_WIDTH * sizeof *t->leaf_items))
+    if (!fl_bvh_reserve(&t->leaf_items, &t->leaf_capacity, t->leaf_count + 1,
+                        FL_BVH_WIDTH * sizeof *t->leaf_items))
         return FL_NONE;
     uint32_t *out = &t->leaf_items[(size_t)t->leaf_count * FL_BVH_WIDTH];
     for (uint32_t k = 0; k < FL_BVH_WIDTH; k++)
@@ -238,7 +147,8 @@ static uint32_t own_children(const builder *b, pair_ref r, pair_ref out[FL_BVH_W
 /* Note what is not of the top for later. */
 static uint32_t add_branch(builder *b, pair_ref r)
 {
-    if (!reserve(&b->branches, &b->branch_capacity, b->branch_count + 1, sizeof *b->branches))
+    if (!fl_bvh_reserve(&b->branches, &b->branch_capacity, b->branch_count + 1,
+                        sizeof *b->branches))
         return FL_NONE;
     b->branches[b->branch_count] = (branch){.root = r};
     return FL_BVH_LEAF | b->branch_count++;
@@ -295,22 +205,22 @@ static void split_round(void *context, uint32_t begin, uint32_t end, uint32_t th
     (void)thread;
     for (uint32_t i = begin; i < end; i++) {
         waiting *w = &b->round[i];
-        fl_bvh_split(b->items, &w->items, b->in->are_packed, b->depth >= SAH_DEPTH_MAX, &w->half[0],
-                     &w->half[1]);
+        fl_bvh_split(b->items, &w->items, b->in->are_packed, b->depth >= FL_BVH_SAH_DEPTH_MAX,
+                     &w->half[0], &w->half[1]);
     }
 }
 
 /* A new pair of the top: to be split in the next round, or a piece. */
 static uint32_t add_top(builder *b, const range *items)
 {
-    uint32_t k = add_pair(&b->pairs, items);
+    uint32_t k = fl_bvh_add_pair(&b->pairs, items);
     if (k == FL_NONE)
         return FL_NONE;
     if (items->count > PIECE_ITEMS) {
         b->next[b->next_count++] = (waiting){.items = *items, .pair = k};
         return k;
     }
-    if (!reserve(&b->pieces, &b->piece_capacity, b->piece_count + 1, sizeof *b->pieces))
+    if (!fl_bvh_reserve(&b->pieces, &b->piece_capacity, b->piece_count + 1, sizeof *b->pieces))
         return FL_NONE;
     b->pairs.at[k].right = b->piece_count;
     b->pieces[b->piece_count++] = (piece){.items = *items, .depth = b->depth};
@@ -357,10 +267,10 @@ static void split_pieces(void *context, uint32_t begin, uint32_t end, uint32_t t
     for (uint32_t i = begin; i < end && !w->failed; i++) {
         piece *p = &b->pieces[i];
         p->root.in = &w->pairs;
-        p->root.k = grow(b, &w->pairs, &p->items, p->depth);
+        p->root.k = fl_bvh_grow(&w->pairs, b->items, &p->items, b->in->are_packed, p->depth);
         w->failed = p->root.k == FL_NONE;
         for (uint32_t k = w->pairs.count; !w->failed && k-- > p->root.k;)
-            fold(&w->pairs, &w->pairs.at[k]);
+            fl_bvh_fold(&w->pairs, &w->pairs.at[k]);
     }
 }
 
@@ -372,7 +282,7 @@ static bool make_top(builder *b)
         if (p->left == FL_NONE)
             memcpy(p->cost, pair_at(b->pieces[p->right].root)->cost, sizeof p->cost);
         else
-            fold(&b->pairs, p);
+            fl_bvh_fold(&b->pairs, p);
     }
     return make_child(b, b, &b->top, (pair_ref){&b->pairs, 0}) != FL_NONE;
 }
