@@ -1,12 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE /* madvise */
 #include "core/arena.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
-enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024, PAGE_BYTES = 4096, HUGE_FROM_BYTES = 4 << 20 };
+enum { ALIGN = 64, BLOCK_BYTES = 64 * 1024 };
 
 struct fl_arena_block {
     fl_arena_block *older;
@@ -22,19 +20,6 @@ static void *block_payload(fl_arena_block *block)
     return (char *)block + sizeof *block + (ALIGN - behind % ALIGN) % ALIGN;
 }
 
-/* Ask for large pages where the system has them to give: rays read nodes and triangles here and
- * there, and each page's address must be known. */
-static void ask_for_large_pages(fl_arena_block *block, size_t bytes)
-{
-#ifdef MADV_HUGEPAGE
-    size_t before = (PAGE_BYTES - (uintptr_t)block % PAGE_BYTES) % PAGE_BYTES;
-    if (bytes >= HUGE_FROM_BYTES)
-        madvise((char *)block + before, bytes - before, MADV_HUGEPAGE);
-#else
-    (void)block, (void)bytes;
-#endif
-}
-
 /* A block whose payload holds at least `bytes` (a multiple of ALIGN). A large one is zero as it
  * comes from the system, page by page when it is first touched: by the threads that fill it. */
 static fl_arena_block *block_create(size_t bytes)
@@ -47,7 +32,6 @@ static fl_arena_block *block_create(size_t bytes)
         is_large ? calloc(1, capacity + 2 * ALIGN) : malloc(capacity + 2 * ALIGN);
     if (!block)
         return NULL;
-    ask_for_large_pages(block, capacity);
     *block = (fl_arena_block){.capacity_bytes = capacity, .is_zeroed = is_large};
     return block;
 }

@@ -139,7 +139,7 @@ FL_INLINE void group_meet_pack(packet *p, uint32_t i, uint32_t bits, const mesh_
                 c.y[k] = pack->corner[k][ky][n] - oy - shear_y * c.z[k];
             }
         }
-        fl_wm hit = corners_meet(&c, inverse_z, &t, &doubt) & here;
+        fl_wm hit = corners_meet(&c, inverse_z, &t, &doubt, false) & here;
         uint32_t doubts = fl_wm_bits(doubt) & bits;
         if (doubts) {
             const corners kept = c; /* Which leaves c itself in registers. */
@@ -195,15 +195,16 @@ static __attribute__((noinline)) void packet_meet_pack_doubtful(packet *p, uint3
 
 /* Ray i against the eight triangles, corners along axes `k`: most of the time none is near. */
 FL_INLINE void packet_meet_pack_alone(packet *p, uint32_t i, const mesh_target *target,
-                                      const fl_tri_pack *pack, const int k[3], const bool is_any)
+                                      const fl_tri_pack *pack, const int k[3], const bool is_steady,
+                                      const bool is_any)
 {
     const float o[3] = {p->turned_o[0][i], p->turned_o[1][i], p->turned_o[2][i]};
     for (int at = 0; at < 8; at += FL_W) {
         fl_wf t;
         fl_wm doubt;
         corners c = pack_corners(pack, at, k, o, p->shear_x[i], p->shear_y[i]);
-        fl_wm sure = corners_meet(&c, fl_wf_set(p->inverse_z[i]), &t, &doubt);
-        if (!fl_wm_any(sure | doubt))
+        fl_wm sure = corners_meet(&c, fl_wf_set(p->inverse_z[i]), &t, &doubt, is_steady);
+        if (!is_steady && !fl_wm_any(sure | doubt))
             continue;
         if (fl_wm_any(doubt)) {
             packet_meet_pack_doubtful(p, i, target, pack, is_any);
@@ -220,9 +221,9 @@ FL_INLINE void packet_meet_pack_alone(packet *p, uint32_t i, const mesh_target *
 }
 
 /* Rays one by one against the eight triangles: most of the time none is near. Those with the same
- * kz find the corners in the same place. */
+ * kz find the corners in the same place. is_steady: as in corners_meet. */
 FL_INLINE void rays_meet_pack(packet *p, uint64_t lanes, const mesh_target *target,
-                              const fl_tri_pack *pack, const bool is_any)
+                              const fl_tri_pack *pack, bool is_steady, const bool is_any)
 {
     while (lanes) {
         uint32_t one = (uint32_t)__builtin_ctzll(lanes);
@@ -234,7 +235,10 @@ FL_INLINE void rays_meet_pack(packet *p, uint64_t lanes, const mesh_target *targ
         const int k[3] = {kx, ky, kz};
         for (; same; same &= same - 1) {
             uint32_t i = (uint32_t)__builtin_ctzll(same);
-            packet_meet_pack_alone(p, i, target, pack, k, is_any);
+            if (is_steady)
+                packet_meet_pack_alone(p, i, target, pack, k, true, is_any);
+            else
+                packet_meet_pack_alone(p, i, target, pack, k, false, is_any);
         }
     }
 }
@@ -255,7 +259,8 @@ static inline void packet_meet_pack(packet *p, uint64_t lanes, const mesh_target
             return;
     }
     uint64_t alone = lanes;
-    bool may_group = p->has_beam && FL_W > 1 &&
+    bool is_steady = target->mesh->pack_count >= STEADY_PACKS && (is_any || !p->has_beam);
+    bool may_group = p->has_beam && FL_W > 1 && !is_steady &&
                      (uint32_t)__builtin_popcountll(lanes) * GROUP_GAIN * (8 / FL_W) > 2 * count;
     for (uint64_t left = may_group ? lanes : 0; left;) {
         uint32_t first = (uint32_t)__builtin_ctzll(left) / FL_W * FL_W;
@@ -269,7 +274,7 @@ static inline void packet_meet_pack(packet *p, uint64_t lanes, const mesh_target
         else
             group_meet_pack(p, first, bits, target, pack, triangles, NULL, is_any);
     }
-    rays_meet_pack(p, alone, target, pack, is_any);
+    rays_meet_pack(p, alone, target, pack, is_steady, is_any);
 }
 
 #endif

@@ -59,9 +59,16 @@ FL_INLINE fl_wf most_of(fl_wf a, fl_wf b, fl_wf c)
     return fl_wf_max(fl_wf_max(a, b), c);
 }
 
+/* From so many packs on they do not fit into the second cache. */
+enum { STEADY_PACKS = 2048 };
+
 /* Lanes that are hit for certain, with t; lanes for doubles to decide in *out_doubt: where an edge
- * is 0, or the area of a size that squares badly. NaN corners are neither. */
-FL_INLINE fl_wm corners_meet(const corners *c, fl_wf inverse_z, fl_wf *out_t, fl_wm *out_doubt)
+ * is 0, or the area of a size that squares badly. NaN corners are neither.
+ * is_steady: t is found for nothing rather than asking first whether a line through any triangle is
+ * there, which half of the leaves say yes to: where a pack comes from afar the guess is wrong often
+ * and found out late, and until then nothing of the next ray is done. */
+FL_INLINE fl_wm corners_meet(const corners *c, fl_wf inverse_z, fl_wf *out_t, fl_wm *out_doubt,
+                             const bool is_steady)
 {
     fl_wf u = c->x[2] * c->y[1] - c->y[2] * c->x[1];
     fl_wf v = c->x[0] * c->y[2] - c->y[0] * c->x[2];
@@ -70,7 +77,7 @@ FL_INLINE fl_wm corners_meet(const corners *c, fl_wf inverse_z, fl_wf *out_t, fl
     fl_wm maybe = (least >= 0.0f) | (most <= 0.0f);
     *out_doubt = fl_wi_set(0);
     *out_t = fl_wf_set(-1.0f);
-    if (!fl_wm_any(maybe))
+    if (!(is_steady && FL_W > 1) && !fl_wm_any(maybe))
         return maybe;
     fl_wf area = u + v + w, size = fl_wf_abs(area), share = 1.0f / area;
     fl_wm sure = ((least > 0.0f) | (most < 0.0f)) & (size > 1e-25f) & (size < 1e25f);
@@ -168,7 +175,7 @@ FL_INLINE void needle_meet_pack(needle *r, const mesh_target *target, const fl_t
         fl_wf t;
         fl_wm doubt;
         corners c = pack_corners(pack, at, k, o, r->shear_x, r->shear_y);
-        fl_wm sure = corners_meet(&c, fl_wf_set(r->inverse_z), &t, &doubt);
+        fl_wm sure = corners_meet(&c, fl_wf_set(r->inverse_z), &t, &doubt, false);
         uint32_t lanes = fl_wm_bits(sure & (t > 0.0f) & (t <= r->t));
         needle_accept_all(r, target, &c, pack->face + at, t, lanes, fl_wm_bits(doubt), is_any);
     }

@@ -210,6 +210,24 @@ static void icospheres_are_hit_alike(void **state)
     }
 }
 
+/* Beyond the caches leaves are tested in another way (kernel_isect_mesh.h, STEADY_PACKS). */
+static void large_meshes_are_hit_alike(void **state)
+{
+    static const double distances[] = {3.0, 1e3};
+    (void)state;
+    for (size_t k = 0; k < FL_COUNT_OF(distances); k++) {
+        world w;
+        world_init(&w);
+        fl_mesh *mesh = world_icosphere(5, 0.1, 1.0, fl_v3(0, 0, 0));
+        world_mesh(&w, world_add_mesh(&w, mesh));
+        fl_compiled *probe = world_compile(&w, FL_ACCEL_BVH, NULL);
+        assert_true(probe->geometry.meshes[0].pack_count >= 2048);
+        fl_compiled_release(probe);
+        compare("large icosphere", &w, mesh, 1.0, fl_v3(0, 0, 0), distances[k], 4, 800 + k);
+        world_deinit(&w);
+    }
+}
+
 static void soups_are_hit_alike(void **state)
 {
     static const double sides[] = {0.1, 1.0, 3.0};
@@ -321,9 +339,8 @@ int main(int argc, char **argv)
     if (argc > 1 && strcmp(argv[1], "--all") == 0)
         batches = 10;
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(icospheres_are_hit_alike),
-        cmocka_unit_test(soups_are_hit_alike),
-        cmocka_unit_test(scenes_are_hit_alike),
+        cmocka_unit_test(icospheres_are_hit_alike),  cmocka_unit_test(large_meshes_are_hit_alike),
+        cmocka_unit_test(soups_are_hit_alike),       cmocka_unit_test(scenes_are_hit_alike),
         cmocka_unit_test(closed_meshes_do_not_leak),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
