@@ -52,6 +52,7 @@ static vw_options viewer_options(const cli_options *options)
                         .shader_dir = options->shader_dir,
                         .record_path = options->record,
                         .keys_path = options->keys,
+                        .pin_path = options->pin,
                         .thread_count = thread_count(options),
                         .is_low_priority = true,
                         .is_size_fixed = cli_has(options, CLI_OPT_SIZE),

@@ -124,6 +124,8 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
                         "write all input to a log that replay understands"},
     [CLI_OPT_KEYS] = {"keys", 0, "FILE", CLI_KIND_TEXT, AT(keys), 0, 0, NULL, BIT(CLI_VIEW) | BIT(CLI_REPLAY),
                       "other keys for commands (default: view $XDG_CONFIG_HOME/firstlight/keys)"},
+    [CLI_OPT_PIN] = {"pin", 0, "FILE", CLI_KIND_TEXT, AT(pin), 0, 0, NULL, BIT(CLI_VIEW) | BIT(CLI_REPLAY),
+                     "a picture to compare with, as V would keep it: .exr is linear, 8 bits are seen at the scene's exposure"},
     [CLI_OPT_PIXEL] = {"pixel", 0, "X,Y[,SAMPLE]", CLI_KIND_PIXEL, AT(pixel), 0, 4294967295.0, NULL, BIT(CLI_INFO),
                        "print the tree of rays of one sample (default 0) of the pixel, 0,0 at the top left"},
     [CLI_OPT_PLATFORM] = {"platform", 0, NULL, CLI_KIND_CHOICE_TEXT, AT(platform), 0, 0, platform_names,

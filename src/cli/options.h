@@ -70,6 +70,7 @@ typedef enum cli_option_id {
     CLI_OPT_SOURCE,
     CLI_OPT_RECORD,
     CLI_OPT_KEYS,
+    CLI_OPT_PIN,
     CLI_OPT_PIXEL,
     CLI_OPT_PLATFORM,
     CLI_OPT_SHADER_DIR,
@@ -102,7 +103,7 @@ typedef struct cli_options {
     uint32_t adaptive, sampler, solver, precision, accel, dialect; /**< Values of the core's enums. */
     const char *outputs[CLI_OUTPUTS_MAX];
     uint32_t output_count;
-    const char *checkpoint, *aov, *report, *out_dir, *sweep, *record, *keys, *platform, *shader_dir, *isa, *against;
+    const char *checkpoint, *aov, *report, *out_dir, *sweep, *record, *keys, *pin, *platform, *shader_dir, *isa, *against;
     const char **paths; /**< Arguments that are no options; points into argv. */
     uint32_t path_count;
 } cli_options;

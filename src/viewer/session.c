@@ -66,7 +66,7 @@ bool vw_session_open(vw_session *session, const vw_options *options, const char 
     if (session->scene.path[0] && !set_path(session, session->scene.path, diags))
         return false;
     begin_scene(session, diags);
-    return true;
+    return !options->pin_path || vw_show_load_pin(session, options->pin_path, diags);
 }
 
 static fl_render_options render_options(const vw_session *session)

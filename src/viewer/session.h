@@ -131,6 +131,8 @@ bool vw_session_end_mix(vw_session *session);
 /** Private to session*.c. */
 void vw_show_deinit(vw_show *show);
 vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags);
+/** Pin the picture of a file. False after adding an error. */
+bool vw_show_load_pin(vw_session *session, const char *path, fl_diags *diags);
 /** The state's picture changed, or what is to be shown of it. */
 void vw_show_ask(vw_session *session, fl_diags *diags);
 /** Take what the guide has; true: it is to be composed. */

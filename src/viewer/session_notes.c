@@ -155,7 +155,10 @@ void vw_session_notes(vw_session *session, char *out, size_t out_bytes)
         stress_line(session, &l);
     if (state->assist != VW_ASSIST_OFF || state->layer == VW_LAYER_BLUR)
         sharp_line(session, &l, params.height);
-    if (show->pin.rgb && show->has_difference)
+    if (show->pin.rgb && show->has_difference && show->pin.samples == 0)
+        line(&l, "pinned file; rmse %.3g, at most %.3g", show->difference.rmse,
+             show->difference.largest);
+    else if (show->pin.rgb && show->has_difference)
         line(&l, "pinned at %u samples; rmse %.3g, at most %.3g", show->pin.samples,
              show->difference.rmse, show->difference.largest);
     else if (show->pin.rgb)

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "io/image_file.h"
 #include "viewer/session.h"
 
 /* Values behind the pixels that the state wants to see; -1: none. */
@@ -130,6 +131,45 @@ vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags)
     vw_state_say(&session->state, "pinned at %u samples; Space shows it",
                  progress.complete_samples);
     return VW_DIRTY_SHOW;
+}
+
+/* Linear values of a picture; 8 bits are what a screen showed with that exposure. */
+static void linear_of(const fl_image *image, double exposure_ev, float *out_rgb)
+{
+    size_t count = (size_t)3 * image->width * image->height;
+    if (image->format == FL_PIXEL_FLOAT) {
+        memcpy(out_rgb, image->pixels, count * sizeof *out_rgb);
+        return;
+    }
+    const uint8_t *bytes = image->pixels;
+    float scale = (float)fl_d_exp2(-exposure_ev);
+    for (size_t i = 0; i < count; i++)
+        out_rgb[i] = scale * (image->format == FL_PIXEL_SRGB8 ? fl_srgb8_to_linear[bytes[i]]
+                                                              : (float)bytes[i] / 255.0f);
+}
+
+bool vw_show_load_pin(vw_session *session, const char *path, fl_diags *diags)
+{
+    fl_image *image = fl_image_load(path, (fl_loc){0}, diags);
+    if (!image)
+        return false;
+    size_t pixels = (size_t)image->width * image->height;
+    float *rgb = malloc(pixels * 3 * sizeof *rgb);
+    uint8_t *rgba = malloc(pixels * 4);
+    if (rgb && rgba) {
+        linear_of(image, session->state.look.camera.exposure_ev, rgb);
+        session->show.pin = (vw_pin){.rgb = rgb,
+                                     .rgba = rgba,
+                                     .exposure_ev = (double)INFINITY,
+                                     .width = image->width,
+                                     .height = image->height};
+    } else {
+        free(rgb);
+        free(rgba);
+        fl_out_of_memory(diags, "the pinned picture");
+    }
+    fl_image_release(image);
+    return session->show.pin.rgb != NULL;
 }
 
 static bool reserve(vw_show *show, size_t pixels)

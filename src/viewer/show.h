@@ -14,7 +14,8 @@ typedef struct vw_pin {
     float *rgb; /**< Linear means; NULL: nothing is pinned. Owned. */
     uint8_t *rgba;
     double exposure_ev; /**< Of rgba. */
-    uint32_t width, height, samples;
+    uint32_t width, height;
+    uint32_t samples; /**< 0: it was read from a file. */
 } vw_pin;
 
 /** Zero-initialise. */

@@ -40,6 +40,7 @@ typedef struct vw_options {
         *shader_dir; /**< Read shaders from here instead of the built-in ones; NULL: built-in. */
     const char *record_path; /**< Write all input to this log; NULL: no record. */
     const char *keys_path;   /**< Other chords for commands (keymap.h); NULL: see has_own_keys. */
+    const char *pin_path;    /**< A picture pinned from the start; NULL: none. */
     bool has_own_keys;       /**< Read the user's own file of keys, if there is one. */
     uint32_t thread_count;   /**< As fl_render_options. */
     bool is_low_priority;    /**< As fl_render_options. */

@@ -373,7 +373,9 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
         "(`View 1 { ... }`); views\nof the scene itself stand in the slots that it leaves empty. "
         "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
         "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
-        "saved.\n");
+        "saved. `--pin FILE` compares with a picture of another day or program, as V does\nwith "
+        "the present one: Space flips, Shift+V wipes and subtracts, the error stands in the "
+        "corner.\n");
     add(&b, "\n## Gamepad\n\n| input | command |\n|---|---|\n");
     for (const vw_pad_binding *p = vw_pad_bindings; p->command; p++)
         add(&b, "| `%s` | %s |\n", p->is_axis ? vw_axis_name(p->code) : vw_pad_name(p->code),

@@ -235,6 +235,50 @@ static int remove_folder(void **unused)
     return rmdir(folder);
 }
 
+/* A picture from a file is compared with as one that was pinned: saved and named, it differs by
+ * nothing as floats, by the rounding of bytes as bytes. */
+static void a_file_is_pinned(void **unused)
+{
+    (void)unused;
+    static const char *const names[] = {"pin.exr", "pin.png"};
+    vw_options options = viewer_test_options();
+    options.limits.samples = 2;
+    for (int i = 0; i < 2; i++) {
+        char path[256];
+        path_in_folder(names[i], path);
+        vw_session session;
+        fl_diags diags = {0};
+        fl_progress progress;
+        options.pin_path = NULL;
+        open_session(&session, &options, VIEWER_TEST_SCENE);
+        session.state.look.camera.exposure_ev = -1.0;
+        assert_true(vw_session_restart(&session, &diags));
+        assert_true(fl_render_wait(session.render, -1.0));
+        float *rgb = vw_session_mean(&session, &progress, &diags);
+        assert_true(vw_session_save(&session, path, rgb, &progress, &diags));
+        free(rgb);
+        vw_session_close(&session);
+        options.pin_path = path;
+        open_session(&session, &options, path); /* The saved state, with its exposure. */
+        assert_true(vw_session_restart(&session, &diags));
+        assert_true(fl_render_wait(session.render, -1.0));
+        assert_true(vw_session_refresh(&session, &diags));
+        assert_true(session.show.has_difference);
+        assert_true(i == 0 ? session.show.difference.largest == 0.0
+                           : session.show.difference.rmse > 0.0 &&
+                                 session.show.difference.rmse < 0.01);
+        /* V lets it go. */
+        tap(&session, GLFW_KEY_V, 0, 100);
+        assert_null(session.show.pin.rgb);
+        vw_session_close(&session);
+        unlink(path);
+        assert_false(vw_session_open(&session, &options, VIEWER_TEST_SCENE, 0, 0, &diags));
+        assert_true(diags.error_count > 0);
+        fl_diags_deinit(&diags);
+        vw_session_close(&session);
+    }
+}
+
 /* Enter over the mirror ball: it comes to the middle, and stays there, sharp, while it is orbited.
  */
 static void what_is_under_the_cursor_is_orbited(void **unused)
@@ -278,6 +322,7 @@ static void what_is_under_the_cursor_is_orbited(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_is_pinned),
         cmocka_unit_test(what_is_under_the_cursor_is_orbited),
         cmocka_unit_test(focus_is_found_in_mirrors_and_glass),
         cmocka_unit_test(limits_of_sharpness_are_where_the_blur_is_a_pixel),
