@@ -488,7 +488,7 @@ static void resize_follows_or_fits(void **unused)
 static void controls_page_names_every_command(void **unused)
 {
     (void)unused;
-    char page[8192];
+    char page[16384];
     size_t bytes = vw_controls_markdown(page, sizeof page);
     assert_true(bytes < sizeof page && strlen(page) == bytes);
     assert_int_equal(vw_controls_markdown(NULL, 0), bytes);
