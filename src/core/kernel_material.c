@@ -11,12 +11,14 @@
  * apart in memory. */
 enum { SPOTS = FL_STREAM_RAYS + FL_STREAM_SLACK };
 
-/* Where texture coordinates fall: two columns and two rows of texels, and the weight of the second
- * of each. As pair and blend in texture.c, operation for operation. */
+/* Where texture coordinates fall: numbers of the texels of two rows and two columns (row, column),
+ * and the weight of the second of each. As pair and blend in texture.c, operation for operation. */
 typedef struct spots {
-    uint32_t column[2][SPOTS], row[2][SPOTS];
+    uint32_t texel[2][2][SPOTS];
     double across[SPOTS], down[SPOTS];
 } spots;
+
+typedef uint32_t half_u __attribute__((vector_size(4 * FL_WD)));
 
 /* A coordinate as a fraction of the picture in [0, 1]. */
 FL_INLINE fl_wd fraction(const float *coordinate, float scale, bool clamps)
@@ -26,15 +28,19 @@ FL_INLINE fl_wd fraction(const float *coordinate, float scale, bool clamps)
     return clamps ? fl_wd_min(fl_wd_max(x, zero), fl_wd_set(1.0)) : x - fl_wd_floor(x);
 }
 
-FL_INLINE void store_index(uint32_t *p, fl_wd x)
+FL_INLINE half_u to_index(fl_wd x)
 {
-    fl_wide_half_i index = __builtin_convertvector(x, fl_wide_half_i);
-    memcpy(p, &index, sizeof index);
+    return (half_u) __builtin_convertvector(x, fl_wide_half_i);
+}
+
+FL_INLINE void store_texel(uint32_t *p, half_u row, uint32_t width, half_u column)
+{
+    half_u texel = row * width + column;
+    memcpy(p, &texel, sizeof texel);
 }
 
 /* Both neighbours of x, in texels, along an axis of `size` that ends or comes round. */
-FL_INLINE fl_wd neighbours(fl_wd x, double size, bool clamps, uint32_t *out_first,
-                           uint32_t *out_second)
+FL_INLINE fl_wd neighbours(fl_wd x, double size, bool clamps, half_u out[2])
 {
     fl_wd zero = fl_wd_set(0.0), last = fl_wd_set(size - 1.0);
     if (clamps)
@@ -43,8 +49,8 @@ FL_INLINE fl_wd neighbours(fl_wd x, double size, bool clamps, uint32_t *out_firs
         x = fl_wd_select((fl_wl)(x < 0.5), x + size - 0.5, x - 0.5);
     fl_wd low = fl_wd_floor(x), first = fl_wd_min(low, last), second = first + 1.0;
     fl_wl is_end = (fl_wl)(second > last);
-    store_index(out_first, first);
-    store_index(out_second, fl_wd_select(is_end, clamps ? last : zero, second));
+    out[0] = to_index(first);
+    out[1] = to_index(fl_wd_select(is_end, clamps ? last : zero, second));
     return x - low;
 }
 
@@ -58,68 +64,94 @@ static void locate(const fl_texture *texture, const float *u, const float *v, ui
         fl_wd x = fraction(u + i, texture->scale[0], false) * width;
         fl_wd y = (1.0 - fraction(v + i, texture->scale[1], clamps)) * height;
         if (is_nearest) {
-            store_index(out->column[0] + i, fl_wd_min(x, fl_wd_set(width - 1.0)));
-            store_index(out->row[0] + i, fl_wd_min(y, fl_wd_set(height - 1.0)));
+            store_texel(out->texel[0][0] + i, to_index(fl_wd_min(y, fl_wd_set(height - 1.0))),
+                        image->width, to_index(fl_wd_min(x, fl_wd_set(width - 1.0))));
             continue;
         }
-        fl_wd across = neighbours(x, width, false, out->column[0] + i, out->column[1] + i);
-        fl_wd down = neighbours(y, height, clamps, out->row[0] + i, out->row[1] + i);
-        fl_wd_store(out->across + i, across);
-        fl_wd_store(out->down + i, down);
+        half_u column[2], row[2];
+        fl_wd_store(out->across + i, neighbours(x, width, false, column));
+        fl_wd_store(out->down + i, neighbours(y, height, clamps, row));
+        for (int k = 0; k < 2; k++)
+            for (int l = 0; l < 2; l++)
+                store_texel(out->texel[k][l] + i, row[k], image->width, column[l]);
     }
     size_t bytes = image->format == FL_PIXEL_FLOAT ? 3 * sizeof(float) : 3;
     for (uint32_t i = begin; i < end; i++)
         for (int k = 0; k < (is_nearest ? 1 : 2); k++)
-            __builtin_prefetch((const char *)image->pixels +
-                               bytes * ((size_t)out->row[k][i] * image->width + out->column[0][i]));
+            __builtin_prefetch((const char *)image->pixels + bytes * out->texel[k][0][i]);
+}
+
+/* One channel of a texel, as it stands in the picture or in its table. */
+FL_INLINE float texel_channel(const void *pixels, fl_pixel_format format, size_t at)
+{
+    if (format == FL_PIXEL_FLOAT)
+        return ((const float *)pixels)[at];
+    uint8_t byte = ((const uint8_t *)pixels)[at];
+    return format == FL_PIXEL_SRGB8 ? fl_srgb8_to_linear[byte] : (float)byte;
 }
 
 /* Red green blue of one texel of each of the first `lanes` lanes; the others, whose spots are those
  * of another, perhaps larger picture, get the first one's. */
-FL_INLINE void gather_texels(const fl_image *image, const uint32_t *column, const uint32_t *row,
+FL_INLINE void gather_texels(const void *pixels, fl_pixel_format format, const uint32_t *texel,
                              uint32_t lanes, fl_wd out[3])
 {
-    float c[3][FL_WD];
-    for (uint32_t l = 0; l < FL_WD; l++) {
-        uint32_t from = l < lanes ? l : 0;
-        size_t at = 3 * ((size_t)row[from] * image->width + column[from]);
-        for (int k = 0; k < 3; k++) {
-            if (image->format == FL_PIXEL_FLOAT)
-                c[k][l] = ((const float *)image->pixels)[at + (size_t)k];
-            else if (image->format == FL_PIXEL_SRGB8)
-                c[k][l] = fl_srgb8_to_linear[((const uint8_t *)image->pixels)[at + (size_t)k]];
-            else
-                c[k][l] = (float)((const uint8_t *)image->pixels)[at + (size_t)k];
-        }
-    }
-    for (int k = 0; k < 3; k++) {
-        out[k] = fl_wd_load_floats(c[k]);
-        if (image->format == FL_PIXEL_LINEAR8)
+    for (uint32_t k = 0; k < 3; k++) {
+        fl_wide_half_f c;
+        for (uint32_t l = 0; l < FL_WD; l++)
+            c[l] = texel_channel(pixels, format, 3 * (size_t)texel[l < lanes ? l : 0] + k);
+        out[k] = FL_WIDE_WIDEN_F(c);
+        if (format == FL_PIXEL_LINEAR8)
             out[k] = out[k] / 255.0;
     }
+}
+
+/* Spots i to i + FL_WD - 1, of which `lanes` count. */
+FL_INLINE void read_block(const fl_texture *texture, fl_pixel_format format, const spots *s,
+                          uint32_t i, uint32_t lanes, fl_array3 out)
+{
+    const void *pixels = texture->image->pixels;
+    float *channel[3] = {out.x, out.y, out.z};
+    fl_wd a[3], b[3], c[3], d[3];
+    gather_texels(pixels, format, s->texel[0][0] + i, lanes, a);
+    if (texture->filter != FL_FILTER_NEAREST) {
+        gather_texels(pixels, format, s->texel[0][1] + i, lanes, b);
+        gather_texels(pixels, format, s->texel[1][0] + i, lanes, c);
+        gather_texels(pixels, format, s->texel[1][1] + i, lanes, d);
+        fl_wd across = fl_wd_load(s->across + i), down = fl_wd_load(s->down + i);
+        for (int k = 0; k < 3; k++) {
+            fl_wd top = a[k] + across * (b[k] - a[k]);
+            fl_wd bottom = c[k] + across * (d[k] - c[k]);
+            a[k] = top + down * (bottom - top);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        fl_wd_store_floats(channel[k] + i, a[k]);
+}
+
+/* One copy for each format, which is then a constant. */
+FL_INLINE void read_all(const fl_texture *texture, fl_pixel_format format, const spots *s,
+                        uint32_t begin, uint32_t end, fl_array3 out)
+{
+    uint32_t i = begin;
+    for (; i + FL_WD <= end; i += FL_WD)
+        read_block(texture, format, s, i, FL_WD, out);
+    if (i < end)
+        read_block(texture, format, s, i, end - i, out);
 }
 
 static void read_texels(const fl_texture *texture, const spots *s, uint32_t begin, uint32_t end,
                         fl_array3 out)
 {
-    const fl_image *image = texture->image;
-    float *channel[3] = {out.x, out.y, out.z};
-    for (uint32_t i = begin; i < end; i += FL_WD) {
-        fl_wd a[3], b[3], c[3], d[3];
-        gather_texels(image, s->column[0] + i, s->row[0] + i, end - i, a);
-        if (texture->filter != FL_FILTER_NEAREST) {
-            gather_texels(image, s->column[1] + i, s->row[0] + i, end - i, b);
-            gather_texels(image, s->column[0] + i, s->row[1] + i, end - i, c);
-            gather_texels(image, s->column[1] + i, s->row[1] + i, end - i, d);
-            fl_wd across = fl_wd_load(s->across + i), down = fl_wd_load(s->down + i);
-            for (int k = 0; k < 3; k++) {
-                fl_wd top = a[k] + across * (b[k] - a[k]);
-                fl_wd bottom = c[k] + across * (d[k] - c[k]);
-                a[k] = top + down * (bottom - top);
-            }
-        }
-        for (int k = 0; k < 3; k++)
-            fl_wd_store_floats(channel[k] + i, a[k]);
+    switch (texture->image->format) {
+    case FL_PIXEL_FLOAT:
+        read_all(texture, FL_PIXEL_FLOAT, s, begin, end, out);
+        break;
+    case FL_PIXEL_SRGB8:
+        read_all(texture, FL_PIXEL_SRGB8, s, begin, end, out);
+        break;
+    case FL_PIXEL_LINEAR8:
+        read_all(texture, FL_PIXEL_LINEAR8, s, begin, end, out);
+        break;
     }
 }
 
