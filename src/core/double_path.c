@@ -326,7 +326,8 @@ static fl_vec3 shade(path *p, const branch *b, branches *next, bool may_spawn)
     spot at = {.path = b->path};
     fl_vec3 sum = look(p, &b->ray, &hit, &at);
     for (uint32_t l = 0; l < frame->light_count; l++)
-        sum = fl_v3_add(sum, light(p, &at, l));
+        if (!frame->lights[l].is_dark)
+            sum = fl_v3_add(sum, light(p, &at, l));
     if (may_spawn)
         spawn_both(p, &at, b, next);
     return sum;

@@ -87,7 +87,8 @@ static void prepare_light(fl_frame *frame, uint32_t index)
 
     *out = (fl_frame_light){.kind = light->kind, .index = index, .samples = 1};
     out->is_two_sided = light->kind != FL_LIGHT_DISK || light->is_two_sided;
-    out->draws = light->kind == FL_LIGHT_DISK && light->radius > 0.0;
+    out->is_dark = fl_v3_max_abs(light->color) == 0.0;
+    out->draws = light->kind == FL_LIGHT_DISK && light->radius > 0.0 && !out->is_dark;
     if (out->draws) {
         uint32_t own = light->samples ? light->samples : p->light_samples_default;
         out->samples = fl_max_u32(p->light_samples ? p->light_samples : own, 1);
@@ -181,6 +182,8 @@ void fl_frame_generalize(fl_frame *frame)
     plan->has_specular = plan->has_textures = true;
     plan->has_reflection = plan->has_refraction = branches;
     plan->dimensions = (plan->samples_pixel ? 2u : 0u) + 2u;
-    for (uint32_t i = 0; i < frame->light_count; i++)
+    for (uint32_t i = 0; i < frame->light_count; i++) {
+        frame->lights[i].is_dark = false;
         frame->lights[i].draws = frame->lights[i].kind == FL_LIGHT_DISK;
+    }
 }

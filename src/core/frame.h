@@ -19,6 +19,7 @@ typedef struct fl_frame_light {
     float color[3];
     float attenuation[3];
     bool has_attenuation, is_two_sided;
+    bool is_dark;     /**< Black, as when it is switched off: it is left out. */
     bool draws;       /**< Points of the disk are drawn: two dimensions a sample. */
     uint32_t samples; /**< 1 for point, directional and radius-0 disk lights. */
     uint32_t index;   /**< In the scene's order: part of the sample set's number (decision 6). */

@@ -108,6 +108,8 @@ static bool add_lights(fl_pipe *pipe)
     uint32_t count = stage->rays.count;
     for (uint32_t l = 0; l < frame->light_count; l++) {
         const fl_frame_light *light = &frame->lights[l];
+        if (light->is_dark)
+            continue;
         fl_array3 sum = light->samples > 1 ? work->lit : stage->radiance;
         if (light->samples > 1)
             clear3(work->lit, count);

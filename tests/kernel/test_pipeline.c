@@ -157,6 +157,25 @@ static void unused_features_cost_nothing(void **state)
     assert_int_equal(second.counts.shadow_rays, 0);
 }
 
+/* The picture without it, and neither rays nor numbers. */
+static void a_light_that_is_off_costs_nothing(void **state)
+{
+    (void)state;
+    for (int precision = 0; precision < 2; precision++) {
+        world w;
+        make_rich(&w);
+        w.params.precision = precision ? FL_PRECISION_DOUBLE : FL_PRECISION_FLOAT;
+        for (uint32_t l = 0; l < w.scene.light_count; l++)
+            w.lights[l].color = fl_v3(0, 0, 0);
+        world_render(&w, fl_cpu_best_isa(), 2, &first);
+        assert_int_equal(first.counts.shadow_rays, 0);
+        w.scene.light_count = 0;
+        world_render(&w, fl_cpu_best_isa(), 2, &second);
+        assert_same_picture(&first, &second);
+        assert_int_equal(first.counts.sample_dimensions, second.counts.sample_dimensions);
+    }
+}
+
 static void crop_is_part_of_the_whole(void **state)
 {
     (void)state;
@@ -546,6 +565,7 @@ int main(void)
         cmocka_unit_test(instruction_sets_agree),
         cmocka_unit_test(general_pipeline_agrees),
         cmocka_unit_test(unused_features_cost_nothing),
+        cmocka_unit_test(a_light_that_is_off_costs_nothing),
         cmocka_unit_test(crop_is_part_of_the_whole),
         cmocka_unit_test(aperture_zero_is_a_pinhole),
         cmocka_unit_test(phong_in_closed_form),
