@@ -79,8 +79,10 @@ static bool check_number(fl_tree_parser *p, const fl_key *key, double value)
                         (int)p->token.bytes, p->token.text);
     bool is_in = value >= key->lo && value <= key->hi &&
                  !((key->flags & FL_KEY_ABOVE_LO) && value == key->lo);
-    bool is_float = fabs(value) <= (double)FLT_MAX &&
-                    (!(key->flags & FL_KEY_ABOVE_LO) || value >= (double)FLT_MIN);
+    /* An index of refraction divides; 0 is opaque in one dialect. */
+    bool must_be_normal =
+        (key->flags & FL_KEY_ABOVE_LO) || (key->id == FL_KEY_REFRACTION_INDEX && value != 0.0);
+    bool is_float = fabs(value) <= (double)FLT_MAX && (!must_be_normal || value >= (double)FLT_MIN);
     if (is_in && (key->flags & FL_KEY_FLOAT) && !is_float)
         return fl_error(p->diags, here(p), "'%s' must fit in a float (1.2e-38 to 3.4e38), got %.*s",
                         key->name, (int)p->token.bytes, p->token.text);
