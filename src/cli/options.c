@@ -2,6 +2,7 @@
 #include "cli/options.h"
 
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -148,7 +149,7 @@ static bool whole_number(const char *text, double *out)
     return rest == end && rest != text;
 }
 
-/* Numbers separated by blanks, commas or `separator`; true when exactly `count` and nothing else. */
+/* Finite numbers separated by blanks, commas or `separator`; true when exactly `count` and nothing else. */
 static bool number_list(const char *text, char separator, uint32_t count, double *out)
 {
     const char *end = text + strlen(text);
@@ -156,7 +157,7 @@ static bool number_list(const char *text, char separator, uint32_t count, double
         while (*text == ' ' || *text == ',' || (i && *text == separator))
             text++;
         text = fl_number_parse(text, end, &out[i]);
-        if (!text)
+        if (!text || !isfinite(out[i]))
             return false;
     }
     while (*text == ' ')
