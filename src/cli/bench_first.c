@@ -67,7 +67,7 @@ static void go_on_with(void *context, fl_compiled *refined)
     swap *s = context;
     fl_diags diags = {0};
     if (refined && fl_render_replace_scene(s->render, refined, &diags))
-        s->at = bench_wall_seconds() - s->begin;
+        s->at = cli_wall_seconds() - s->begin;
     fl_diags_deinit(&diags);
 }
 
@@ -92,11 +92,11 @@ static bool go_once(const bench_setup *setup, const fl_scene *scene, const fl_pa
 {
     fl_compile_options options = setup->compile;
     options.quick_above = w->is_quick;
-    swap s = {.begin = bench_wall_seconds()};
+    swap s = {.begin = cli_wall_seconds()};
     fl_pool *pool = fl_pool_create(setup->thread_count, setup->diags);
     fl_compiled *compiled = pool ? fl_compile(scene, &options, pool, setup->diags) : NULL;
     fl_pool_destroy(pool);
-    w->at[COMPILED][round] = bench_wall_seconds() - s.begin;
+    w->at[COMPILED][round] = cli_wall_seconds() - s.begin;
     if (!compiled)
         return false;
     const fl_render_options how = {.thread_count = setup->thread_count};
@@ -107,7 +107,7 @@ static bool go_once(const bench_setup *setup, const fl_scene *scene, const fl_pa
         return false;
     }
     fl_render_set_limits(s.render, &limits);
-    double begun = bench_wall_seconds() - s.begin;
+    double begun = cli_wall_seconds() - s.begin;
     bool ok = render_on(setup, params, compiled, &s, w);
     fl_render_destroy(s.render);
     w->at[FIRST_PICTURE][round] = begun + w->progress.first_picture_seconds;
@@ -184,7 +184,7 @@ static bool run(const bench_setup *setup, const bench_mesh *mesh, const fl_scene
     for (int k = 0; k < 3; k++)
         if (!(ways[k].film = malloc(bytes)))
             return fl_out_of_memory(setup->diags, "the film");
-    double begin = bench_wall_seconds();
+    double begin = cli_wall_seconds();
     for (uint32_t r = 0; r < setup->rounds; r++) {
         bench_show_progress(r, setup->rounds, begin);
         for (int k = 0; k < 3; k++)

@@ -8,21 +8,11 @@
 #include <time.h>
 #include <unistd.h>
 
-static double seconds_of(clockid_t clock)
-{
-    struct timespec t;
-    clock_gettime(clock, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 double bench_thread_seconds(void)
 {
-    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
-}
-
-double bench_wall_seconds(void)
-{
-    return seconds_of(CLOCK_MONOTONIC);
+    struct timespec t;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
 static int ascending(const void *a, const void *b)
@@ -42,7 +32,7 @@ void bench_show_progress(uint32_t done, uint32_t all, double begin)
 {
     if (!isatty(STDERR_FILENO))
         return;
-    double spent = bench_wall_seconds() - begin;
+    double spent = cli_wall_seconds() - begin;
     if (done == all)
         fprintf(stderr, "\r\033[K");
     else if (done == 0)

@@ -32,10 +32,8 @@ bench_figure bench_figure_of(double *values, uint32_t count);
 
 /** CPU seconds of this thread. */
 double bench_thread_seconds(void);
-/** Wall seconds from some point on. */
-double bench_wall_seconds(void);
 
-/** Say on a terminal how far it is and how long the rest will take; `begin` by the above. */
+/** Say on a terminal how far it is and how long the rest will take; `begin` by cli_wall_seconds. */
 void bench_show_progress(uint32_t done, uint32_t all, double begin);
 
 /** Rays of all kinds and the build, on one mesh, one thread. False after adding an error. */

@@ -28,9 +28,9 @@ static double spin_seconds(uint32_t thread_count, fl_diags *diags)
     fl_pool *pool = fl_pool_create(thread_count, diags);
     if (!pool)
         return HUGE_VAL;
-    double begin = bench_wall_seconds();
+    double begin = cli_wall_seconds();
     fl_parallel_for(pool, SPIN_PIECES, 1, spin, sink);
-    double seconds = bench_wall_seconds() - begin;
+    double seconds = cli_wall_seconds() - begin;
     fl_pool_destroy(pool);
     return seconds;
 }

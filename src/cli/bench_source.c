@@ -141,7 +141,7 @@ bool bench_source_run(const bench_setup *setup, const cli_scene *scene, const be
     record t[WAY_COUNT];
     ratios x[WAY_COUNT];
     uint32_t steps = setup->rounds * WAY_COUNT;
-    double begin = bench_wall_seconds();
+    double begin = cli_wall_seconds();
     for (uint32_t r = 0; r < setup->rounds; r++)
         for (uint32_t k = 0; k < WAY_COUNT; k++) {
             if (cli_was_interrupted())

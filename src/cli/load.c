@@ -133,7 +133,7 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->precision = (fl_precision)o->precision;
 }
 
-static double seconds_now(void)
+double cli_wall_seconds(void)
 {
     struct timespec now;
     clock_gettime(CLOCK_MONOTONIC, &now);
@@ -142,7 +142,7 @@ static double seconds_now(void)
 
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)
 {
-    double begin = seconds_now();
+    double begin = cli_wall_seconds();
     if (!cli_scene_parse(options, path, out))
         return false;
     fl_pool *pool = fl_pool_create(options->threads, out->diags);
@@ -169,7 +169,7 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     bool is_auto = cli_has(options, CLI_OPT_LIGHT_SAMPLES) && options->light_samples == CLI_AUTO;
     if (is_auto && !cli_noise_choose_light_samples(out->compiled, &out->params, out->diags))
         return false;
-    out->load_seconds = seconds_now() - begin;
+    out->load_seconds = cli_wall_seconds() - begin;
     return true;
 }
 

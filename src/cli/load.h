@@ -29,6 +29,9 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
 
 void cli_scene_close(cli_scene *scene);
 
+/** Seconds on a clock that only goes forward. */
+double cli_wall_seconds(void);
+
 /** Print all diagnostics on standard error, most recent last, with a count of those dropped. */
 void cli_print_diags(const fl_diags *diags);
 

@@ -2,17 +2,9 @@
 #include "cli/noise.h"
 
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "cli/load.h"
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* One line, rewritten in place. */
 static void show_progress(const char *name, const fl_noise *noise, double seconds)
@@ -28,11 +20,11 @@ static void show_progress(const char *name, const fl_noise *noise, double second
 static bool run_rounds(fl_noise *noise, const char *progress_name)
 {
     bool shows = progress_name && isatty(STDERR_FILENO), has_shown = false, ok = true;
-    double begun = now_s(), shown = begun;
+    double begun = cli_wall_seconds(), shown = begun;
     while (ok && fl_noise_rounds(noise) < FL_NOISE_ROUNDS &&
            !(cli_was_interrupted() && fl_noise_rounds(noise) > 0)) {
         ok = fl_noise_step(noise);
-        double now = now_s();
+        double now = cli_wall_seconds();
         if (!shows || now - begun < 1.0 || now - shown < 0.1)
             continue;
         show_progress(progress_name, noise, now - begun);

@@ -5,17 +5,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { SEED_WARM_UP = 999, LOAD_BYTES = 64 }; /* Seeds of rounds are below. */
-
-double study_now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
-}
 
 double study_load_average(void)
 {
@@ -59,7 +51,7 @@ static bool should_stop(study *s, double share)
     if (s->settings.should_stop && s->settings.should_stop())
         s->was_interrupted = true;
     bool is_over =
-        s->settings.budget_s > 0.0 && study_now_s() - s->begin_s > share * s->settings.budget_s;
+        s->settings.budget_s > 0.0 && cli_wall_seconds() - s->begin_s > share * s->settings.budget_s;
     if (is_over && share == STUDY_WHOLE_BUDGET)
         s->ran_out_of_budget = true;
     return s->was_interrupted || is_over;
@@ -69,7 +61,7 @@ static bool should_stop(study *s, double share)
 
 void study_stage_begin(study *s, double total)
 {
-    s->stage = (study_stage){.begin_s = study_now_s(), .total = total};
+    s->stage = (study_stage){.begin_s = cli_wall_seconds(), .total = total};
 }
 
 void study_stage_set(study *s, const char *what, double done, double part)
@@ -86,7 +78,7 @@ static void show(const study *s, double share)
     if (!s->settings.shows_progress || !(t->total > 0.0))
         return;
     double done = fl_clamp((t->done + share * t->part) / t->total, 0.0, 1.0);
-    double gone = study_now_s() - t->begin_s;
+    double gone = cli_wall_seconds() - t->begin_s;
     char bar[25], left[48] = "";
     for (uint32_t i = 0; i < 24; i++)
         bar[i] = i < 24.0 * done ? '#' : '.';
@@ -264,7 +256,7 @@ static study_outcome run_round(study *s, uint32_t round, const double *expected,
     if (round < s->settings.repeats)
         snprintf(number, sizeof number, "round %u of %u", round + 1, s->settings.repeats);
     for (uint32_t i = 0; i < s->plan.count; i++) {
-        double begin_s = study_now_s(), part = expected ? expected[i] : 1.0;
+        double begin_s = cli_wall_seconds(), part = expected ? expected[i] : 1.0;
         snprintf(what, sizeof what, "%s, %s", number, s->plan.configs[i].name);
         study_stage_set(s, what, before, 0.0);
         study_outcome o = run_curve(s, i, round);
@@ -272,7 +264,7 @@ static study_outcome run_round(study *s, uint32_t round, const double *expected,
             return o;
         before += part;
         if (out_seconds)
-            out_seconds[i] = study_now_s() - begin_s;
+            out_seconds[i] = cli_wall_seconds() - begin_s;
     }
     return STUDY_REACHED;
 }
@@ -334,7 +326,7 @@ static bool run_all(study *s)
 bool study_run(cli_scene *scene, const study_settings *settings, uint32_t knobs, study *out)
 {
     const fl_params *p = &scene->params;
-    out->begin_s = study_now_s();
+    out->begin_s = cli_wall_seconds();
     out->load = study_load_average();
     out->scene = scene;
     out->settings = *settings;
@@ -351,7 +343,7 @@ bool study_run(cli_scene *scene, const study_settings *settings, uint32_t knobs,
         allocate(out) && study_references_open(out) && run_all(out);
     if (out->settings.shows_progress)
         fputc('\n', stderr);
-    out->seconds = study_now_s() - out->begin_s;
+    out->seconds = cli_wall_seconds() - out->begin_s;
     return ok;
 }
 

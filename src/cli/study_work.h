@@ -14,9 +14,6 @@ typedef enum study_outcome { STUDY_REACHED, STUDY_STOPPED, STUDY_FAILED } study_
 #define STUDY_WHOLE_BUDGET    1.0
 #define STUDY_REFERENCE_SHARE 0.5
 
-/** Seconds on a clock that only goes forward. */
-double study_now_s(void);
-
 /** Go on to `samples` samples; *out_progress is what was reached. STOPPED: interrupted, or more
  * than `share` of the budget is gone. */
 study_outcome study_render_to(study *s, fl_render *render, uint32_t samples, double share,

@@ -11,8 +11,7 @@
 #include "core/bvh_pair.h"
 
 enum {
-    PIECE_ITEMS = 4096,      /* Ranges up to this size are split by one thread. */
-    ITEM_COUNT_MAX = 1 << 28 /* Leaf indices have 28 bits. */
+    PIECE_ITEMS = 4096 /* Ranges up to this size are split by one thread. */
 };
 
 _Static_assert((FL_BVH_WIDTH - 1) * (FL_BVH_SAH_DEPTH_MAX + 28) + 1 <= FL_BVH_STACK_MAX,
@@ -99,14 +98,8 @@ static uint32_t add_leaf(tree *t, const item *items, uint32_t count)
         return FL_NONE;
     uint32_t *out = &t->leaf_items[(size_t)t->leaf_count * FL_BVH_WIDTH];
     for (uint32_t k = 0; k < FL_BVH_WIDTH; k++)
-        out[k] = k < count ? item_number(&items[k]) : FL_NONE;
-    for (uint32_t k = 1; k < count; k++)
-        for (uint32_t j = k; j > 0 && out[j] < out[j - 1]; j--) {
-            uint32_t swap = out[j];
-            out[j] = out[j - 1];
-            out[j - 1] = swap;
-        }
-    return FL_BVH_LEAF | (count - 1) << 28 | t->leaf_count++;
+        leaf_insert(out, k, k < count ? item_number(&items[k]) : FL_NONE);
+    return leaf_child(t->leaf_count++, count);
 }
 
 static const pair *pair_at(pair_ref r)
@@ -418,7 +411,7 @@ bool fl_bvh_build(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *arena, f
 {
     uint32_t count = input->count, threads = fl_pool_thread_count(pool);
     FL_ASSERT(count >= 1);
-    if (count > ITEM_COUNT_MAX)
+    if (count > FL_BVH_ITEMS_MAX)
         return false;
     fl_bvh result = {.origin_pad = input->origin_pad};
     builder b = {.items = aligned_alloc(64, (count * sizeof *b.items + 63) / 64 * 64),

@@ -18,8 +18,7 @@ enum {
     DIGITS = 1 << DIGIT_BITS,
     CHUNKS_MAX = 64, /* Parts of a pass, done side by side. */
     CHUNK_ITEMS_MIN = 16384,
-    LEVELS_MAX = 10,
-    ITEM_COUNT_MAX = 1 << 28
+    LEVELS_MAX = 10
 };
 
 /* An item and where it comes on the curve. */
@@ -213,12 +212,8 @@ static uint32_t make_leaf(const quick *q, uint32_t leaf, float lo[3], float hi[3
 {
     uint32_t first = leaf * FL_BVH_WIDTH, count = fl_min_u32(q->in->count - first, FL_BVH_WIDTH);
     uint32_t *out = &q->out->items[first];
-    for (uint32_t n = 0; n < FL_BVH_WIDTH; n++) {
-        uint32_t number = n < count ? q->sorted[first + n].item : FL_NONE, at = n;
-        for (; at > 0 && out[at - 1] > number; at--)
-            out[at] = out[at - 1];
-        out[at] = number;
-    }
+    for (uint32_t n = 0; n < FL_BVH_WIDTH; n++)
+        leaf_insert(out, n, n < count ? q->sorted[first + n].item : FL_NONE);
     for (uint32_t n = 0; n < count; n++)
         for (int a = 0; a < 3; a++) {
             float l = q->in->boxes[out[n]].lo[a] - q->in->pad;
@@ -226,7 +221,7 @@ static uint32_t make_leaf(const quick *q, uint32_t leaf, float lo[3], float hi[3
             lo[a] = l < lo[a] ? l : lo[a];
             hi[a] = h > hi[a] ? h : hi[a];
         }
-    return FL_BVH_LEAF | (count - 1) << 28 | leaf;
+    return leaf_child(leaf, count);
 }
 
 /* Child and box of a finished node; absent children are inside out and change nothing. */
@@ -294,7 +289,7 @@ bool fl_bvh_build_quick(fl_bvh *out_bvh, const fl_bvh_input *input, fl_arena *ar
 {
     uint32_t count = input->count;
     FL_ASSERT(count >= 1);
-    if (count > ITEM_COUNT_MAX)
+    if (count > FL_BVH_ITEMS_MAX)
         return false;
     fl_bvh result = {.origin_pad = input->origin_pad};
     quick q = {.in = input, .out = &result};

@@ -22,6 +22,9 @@ typedef struct item {
     fl_wf hi; /**< Fourth: 0. */
 } item;
 
+/** Leaf indices have 28 bits. */
+enum { FL_BVH_ITEMS_MAX = 1 << 28 };
+
 typedef struct range {
     uint32_t first, count;
     wide_box box;
@@ -37,6 +40,20 @@ FL_INLINE float box_half_area(const wide_box *box)
 FL_INLINE uint32_t item_number(const item *it)
 {
     return (uint32_t)((fl_wi)it->lo)[3];
+}
+
+/** Put `number` among the n ascending ones of a leaf; FL_NONE stays last. */
+FL_INLINE void leaf_insert(uint32_t *leaf, uint32_t n, uint32_t number)
+{
+    for (; n > 0 && leaf[n - 1] > number; n--)
+        leaf[n] = leaf[n - 1];
+    leaf[n] = number;
+}
+
+/** A child that is leaf `leaf` of `count` items. */
+FL_INLINE uint32_t leaf_child(uint32_t leaf, uint32_t count)
+{
+    return FL_BVH_LEAF | (count - 1) << 28 | leaf;
 }
 
 /** Items [first, first + count) with their bounds. */

@@ -53,6 +53,14 @@ size_t fl_image_bytes(const fl_image *image)
     return bytes;
 }
 
+float fl_image_linear(const fl_image *image, size_t i)
+{
+    if (image->format == FL_PIXEL_FLOAT)
+        return ((const float *)image->pixels)[i];
+    uint8_t byte = ((const uint8_t *)image->pixels)[i];
+    return image->format == FL_PIXEL_SRGB8 ? fl_srgb8_to_linear[byte] : (float)byte / 255.0f;
+}
+
 double fl_srgb_to_linear(double encoded)
 {
     return fl_d_srgb_decode(encoded);

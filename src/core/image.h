@@ -37,6 +37,9 @@ size_t fl_image_bytes(const fl_image *image);
  *  library decides them. Each is the float nearest to the exact value. */
 extern const float fl_srgb8_to_linear[256];
 
+/** Sample i of the picture's 3 * width * height, linear. */
+float fl_image_linear(const fl_image *image, size_t i);
+
 /** The same curve and its inverse for values between; clamped to [0, 1], NaN becomes 0. */
 double fl_srgb_to_linear(double encoded);
 double fl_srgb_from_linear(double linear);

@@ -7,8 +7,8 @@
  *     fl_d_sincos(x, &s, &c)   also _turns, _deg; error about 1e-16, see math_body.inc for domains
  *     fl_d_tan_deg, fl_d_atan2(y, x), fl_d_acos
  *     fl_d_log2, fl_d_exp2, fl_d_pow, fl_d_srgb_encode, fl_d_srgb_decode     float accuracy only
- *     fl_f_sincos, _sincos_turns, _sincos_eighth, atan2, acos, log2, exp2, pow, srgb_encode,
- * srgb_decode
+ *     fl_f_sincos, _sincos_turns, _sincos_eighth, atan2, acos, log2, exp2, pow
+ *     fl_f_srgb_encode, fl_f_srgb_decode
  */
 #ifndef FL_MATH64_H
 #define FL_MATH64_H

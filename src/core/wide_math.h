@@ -3,8 +3,8 @@
  * Layer 1: elementary functions of FL_W floats (fl_wf_*) and FL_WD doubles (fl_wd_*), the same bits
  * for every instruction set and compiler and as the scalars of math64.h.
  *
- *     fl_wf_sincos(x, &s, &c) radians · fl_wf_sincos_turns, _eighth · fl_wf_atan2(y, x) ·
- * fl_wf_acos fl_wf_log2 · fl_wf_exp2 · fl_wf_pow · fl_wf_srgb_encode · fl_wf_srgb_decode
+ *     fl_wf_sincos(x, &s, &c) radians · fl_wf_sincos_turns, _eighth · fl_wf_atan2(y, x)
+ *     fl_wf_acos · fl_wf_log2 · fl_wf_exp2 · fl_wf_pow · fl_wf_srgb_encode · fl_wf_srgb_decode
  *
  * Domains and special values stand at the double functions in math_body.inc; largest errors are
  * measured by tests/kernel/test_math_error.c --all over every float.

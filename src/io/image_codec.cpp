@@ -6,6 +6,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include <cstdlib>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -34,7 +35,7 @@ void put_message(const std::string &text, char *message) noexcept
         length--;
     message[length] = '\0';
     if (length == 0)
-        std::strcpy(message, "the image library gives no reason");
+        std::snprintf(message, FL_CODEC_MESSAGE_BYTES, "the image library gives no reason");
 }
 
 // The message of whatever is being thrown; called inside a catch-all.

@@ -207,14 +207,6 @@ bool fl_image_format_for(const char *path, fl_diags *diags, fl_pixel_format *out
     return kind != NULL;
 }
 
-static float get_linear(const fl_image *image, size_t i)
-{
-    if (image->format == FL_PIXEL_FLOAT)
-        return ((const float *)image->pixels)[i];
-    uint8_t byte = ((const uint8_t *)image->pixels)[i];
-    return image->format == FL_PIXEL_SRGB8 ? fl_srgb8_to_linear[byte] : (float)byte / 255.0f;
-}
-
 /* The samples as `sample` type, linear if float, else sRGB-encoded; NULL: out of memory. */
 static void *convert_samples(const fl_image *image, fl_codec_sample sample)
 {
@@ -222,7 +214,7 @@ static void *convert_samples(const fl_image *image, fl_codec_sample sample)
     size_t sample_bytes = sample == FL_CODEC_U8 ? 1 : sample == FL_CODEC_U16 ? 2 : sizeof(float);
     void *samples = malloc(count * sample_bytes);
     for (size_t i = 0; samples && i < count; i++) {
-        float linear = get_linear(image, i);
+        float linear = fl_image_linear(image, i);
         double encoded = sample == FL_CODEC_FLOAT ? 0.0 : fl_srgb_from_linear((double)linear);
         if (sample == FL_CODEC_FLOAT)
             ((float *)samples)[i] = linear;

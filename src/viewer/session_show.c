@@ -137,15 +137,9 @@ vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags)
 static void linear_of(const fl_image *image, double exposure_ev, float *out_rgb)
 {
     size_t count = (size_t)3 * image->width * image->height;
-    if (image->format == FL_PIXEL_FLOAT) {
-        memcpy(out_rgb, image->pixels, count * sizeof *out_rgb);
-        return;
-    }
-    const uint8_t *bytes = image->pixels;
-    float scale = (float)fl_d_exp2(-exposure_ev);
+    float scale = image->format == FL_PIXEL_FLOAT ? 1.0f : (float)fl_d_exp2(-exposure_ev);
     for (size_t i = 0; i < count; i++)
-        out_rgb[i] = scale * (image->format == FL_PIXEL_SRGB8 ? fl_srgb8_to_linear[bytes[i]]
-                                                              : (float)bytes[i] / 255.0f);
+        out_rgb[i] = scale * fl_image_linear(image, i);
 }
 
 bool vw_show_load_pin(vw_session *session, const char *path, fl_diags *diags)
