@@ -61,6 +61,7 @@ typedef struct builder {
     item *items;
     const fl_bvh_input *in;
     uint32_t thread_count;
+    float unit; /* Of all areas. */
     /* The top. Pairs that are not split are pieces: `right` is the piece's number. */
     pairs pairs;
     tree top;
@@ -110,6 +111,7 @@ static const pair *pair_at(pair_ref r)
 /* Pairs as `n` children of a node, in order; returns how many. */
 static uint32_t children_of(const builder *b, pair_ref r, uint32_t n, pair_ref *out)
 {
+    FL_ASSERT(n >= 1);
     const pair *whole = pair_at(r);
     if (whole->left == FL_NONE && whole->right != FL_NONE)
         return children_of(b, b->pieces[whole->right].root, n, out);
@@ -198,8 +200,8 @@ static void split_round(void *context, uint32_t begin, uint32_t end, uint32_t th
     (void)thread;
     for (uint32_t i = begin; i < end; i++) {
         waiting *w = &b->round[i];
-        fl_bvh_split(b->items, &w->items, b->in->are_packed, b->depth >= FL_BVH_SAH_DEPTH_MAX,
-                     &w->half[0], &w->half[1]);
+        fl_bvh_split(b->items, &w->items, b->unit, b->in->are_packed,
+                     b->depth >= FL_BVH_SAH_DEPTH_MAX, &w->half[0], &w->half[1]);
     }
 }
 
@@ -229,6 +231,7 @@ static bool split_top(builder *b, fl_pool *pool)
     if (!b->round || !b->next)
         return false;
     range all = fl_bvh_range(b->items, 0, b->in->count);
+    b->unit = fl_bvh_unit(&all.box);
     if (add_top(b, &all) == FL_NONE)
         return false;
     while (b->next_count > 0) {
@@ -260,10 +263,11 @@ static void split_pieces(void *context, uint32_t begin, uint32_t end, uint32_t t
     for (uint32_t i = begin; i < end && !w->failed; i++) {
         piece *p = &b->pieces[i];
         p->root.in = &w->pairs;
-        p->root.k = fl_bvh_grow(&w->pairs, b->items, &p->items, b->in->are_packed, p->depth);
+        p->root.k =
+            fl_bvh_grow(&w->pairs, b->items, &p->items, b->unit, b->in->are_packed, p->depth);
         w->failed = p->root.k == FL_NONE;
         for (uint32_t k = w->pairs.count; !w->failed && k-- > p->root.k;)
-            fl_bvh_fold(&w->pairs, &w->pairs.at[k]);
+            fl_bvh_fold(&w->pairs, &w->pairs.at[k], b->unit);
     }
 }
 
@@ -275,7 +279,7 @@ static bool make_top(builder *b)
         if (p->left == FL_NONE)
             memcpy(p->cost, pair_at(b->pieces[p->right].root)->cost, sizeof p->cost);
         else
-            fl_bvh_fold(&b->pairs, p);
+            fl_bvh_fold(&b->pairs, p, b->unit);
     }
     return make_child(b, b, &b->top, (pair_ref){&b->pairs, 0}) != FL_NONE;
 }

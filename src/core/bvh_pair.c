@@ -33,16 +33,17 @@ uint32_t fl_bvh_add_pair(pairs *p, const range *items)
 }
 
 /* Depth is bounded, so recursion is. */
-uint32_t fl_bvh_grow(pairs *p, item *items, const range *r, bool are_packed, uint32_t depth)
+uint32_t fl_bvh_grow(pairs *p, item *items, const range *r, float unit, bool are_packed,
+                     uint32_t depth)
 {
     range left, right;
     uint32_t k = fl_bvh_add_pair(p, r);
     if (k == FL_NONE || r->count <= FL_BVH_WIDTH)
         return k;
-    fl_bvh_split(items, r, are_packed, depth >= FL_BVH_SAH_DEPTH_MAX, &left, &right);
-    uint32_t first = fl_bvh_grow(p, items, &left, are_packed, depth + 1);
+    fl_bvh_split(items, r, unit, are_packed, depth >= FL_BVH_SAH_DEPTH_MAX, &left, &right);
+    uint32_t first = fl_bvh_grow(p, items, &left, unit, are_packed, depth + 1);
     uint32_t second =
-        first == FL_NONE ? FL_NONE : fl_bvh_grow(p, items, &right, are_packed, depth + 1);
+        first == FL_NONE ? FL_NONE : fl_bvh_grow(p, items, &right, unit, are_packed, depth + 1);
     if (second == FL_NONE)
         return FL_NONE;
     p->at[k].left = first;
@@ -50,7 +51,7 @@ uint32_t fl_bvh_grow(pairs *p, item *items, const range *r, bool are_packed, uin
     return k;
 }
 
-void fl_bvh_fold(const pairs *p, pair *whole)
+void fl_bvh_fold(const pairs *p, pair *whole, float unit)
 {
     if (whole->left == FL_NONE)
         return;
@@ -58,7 +59,7 @@ void fl_bvh_fold(const pairs *p, pair *whole)
     float best = INFINITY;
     for (uint8_t n = 2; n <= FL_BVH_WIDTH; n++) {
         for (uint8_t k = 1; k < n; k++)
-            if (l[k] + r[n - k] < best) {
+            if (n == 2 || l[k] + r[n - k] < best) {
                 best = l[k] + r[n - k];
                 whole->share[n] = k;
                 whole->own_left = k;
@@ -66,7 +67,7 @@ void fl_bvh_fold(const pairs *p, pair *whole)
             }
         whole->cost[n] = best;
     }
-    whole->cost[1] = best + box_half_area(&whole->box);
+    whole->cost[1] = best + box_half_area(&whole->box, unit);
     for (int n = 2; n <= FL_BVH_WIDTH; n++)
         if (whole->cost[1] <= whole->cost[n]) {
             whole->cost[n] = whole->cost[1];

@@ -34,13 +34,14 @@ bool fl_bvh_reserve(void *array, uint32_t *capacity, uint32_t needed, size_t ite
 /** A node that is not split; its number, or FL_NONE: out of memory. */
 uint32_t fl_bvh_add_pair(pairs *p, const range *items);
 
-/** Split down to ranges of FL_BVH_WIDTH items, reordering them; `depth` of the range itself.
- * Returns the root or FL_NONE: out of memory. */
-uint32_t fl_bvh_grow(pairs *p, item *items, const range *r, bool are_packed, uint32_t depth);
+/** Split down to ranges of FL_BVH_WIDTH items, reordering them; `depth` of the range itself, `unit`
+ * as in fl_bvh_split. Returns the root or FL_NONE: out of memory. */
+uint32_t fl_bvh_grow(pairs *p, item *items, const range *r, float unit, bool are_packed,
+                     uint32_t depth);
 
 /** The cheapest forms of a pair from those of its halves, which come first: among all ways to leave
  * out nodes of the binary tree the one whose nodes have the least area in all, for a walk visits
- * the fewest. */
-void fl_bvh_fold(const pairs *p, pair *whole);
+ * the fewest. Where areas are no numbers to compare, some form is chosen. */
+void fl_bvh_fold(const pairs *p, pair *whole, float unit);
 
 #endif

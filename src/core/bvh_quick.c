@@ -80,6 +80,8 @@ static void bound_chunks(void *context, uint32_t begin, uint32_t end, uint32_t t
 static void bound_centers(quick *q, fl_pool *pool)
 {
     fl_parallel_for(pool, q->chunk_count, 1, bound_chunks, q);
+    if (fl_pool_is_cancelled(pool))
+        return; /* Not all chunks have bounds. */
     q->centers = q->chunks[0].centers;
     for (uint32_t c = 1; c < q->chunk_count; c++) {
         q->centers.lo = fl_wf_min(q->chunks[c].centers.lo, q->centers.lo);

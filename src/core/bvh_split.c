@@ -32,6 +32,16 @@ static inline void range_grow(range *r, const item *it)
     box_grow(&r->centers, center, center);
 }
 
+float fl_bvh_unit(const wide_box *box)
+{
+    fl_wf side = box->hi - box->lo;
+    float longest = side[0] > side[1] ? side[0] : side[1];
+    longest = side[2] > longest ? side[2] : longest;
+    int exponent = 0;
+    frexpf(longest, &exponent);
+    return ldexpf(1.0f, exponent < -126 ? 126 : -exponent);
+}
+
 range fl_bvh_range(const item *items, uint32_t first, uint32_t count)
 {
     range r = {first, count, box_empty(), box_empty()};
@@ -66,13 +76,13 @@ static float bin_scale(const range *r, int axis)
 
 /* What a box with so many items costs. Of packed ones a single ray tests eight at a time, but rays
  * that stay together test one after the other. */
-static inline float side_cost(const wide_box *box, uint32_t count, bool are_packed)
+static inline float side_cost(const wide_box *box, uint32_t count, float unit, bool are_packed)
 {
     uint32_t packs = are_packed ? (count + FL_BVH_WIDTH - 1) / FL_BVH_WIDTH : 0;
-    return box_half_area(box) * (float)(FL_BVH_WIDTH * packs + count);
+    return box_half_area(box, unit) * (float)(FL_BVH_WIDTH * packs + count);
 }
 
-static void try_axis(const bins *b, int axis, bool are_packed, split *best)
+static void try_axis(const bins *b, int axis, float unit, bool are_packed, split *best)
 {
     float right_cost[BIN_COUNT];
     wide_box box = box_empty();
@@ -80,7 +90,7 @@ static void try_axis(const bins *b, int axis, bool are_packed, split *best)
     for (int i = BIN_COUNT - 1; i > 0; i--) {
         box_grow(&box, b->box[i].lo, b->box[i].hi);
         count += b->count[i];
-        right_cost[i] = count ? side_cost(&box, count, are_packed) : 0.0f;
+        right_cost[i] = count ? side_cost(&box, count, unit, are_packed) : 0.0f;
     }
     uint32_t total = count + b->count[0];
     box = box_empty();
@@ -90,13 +100,13 @@ static void try_axis(const bins *b, int axis, bool are_packed, split *best)
         count += b->count[i - 1];
         if (count == 0 || count == total)
             continue;
-        float cost = side_cost(&box, count, are_packed) + right_cost[i];
+        float cost = side_cost(&box, count, unit, are_packed) + right_cost[i];
         if (cost < best->cost)
             *best = (split){axis, i, cost};
     }
 }
 
-static split find_split(const item *items, const range *r, bool are_packed)
+static split find_split(const item *items, const range *r, float unit, bool are_packed)
 {
     split best = {-1, 0, INFINITY};
     bins b[3];
@@ -119,7 +129,7 @@ static split find_split(const item *items, const range *r, bool are_packed)
     }
     for (int a = 0; a < 3; a++)
         if (scale[a] > 0.0f)
-            try_axis(&b[a], a, are_packed, &best);
+            try_axis(&b[a], a, unit, are_packed, &best);
     return best;
 }
 
@@ -148,12 +158,12 @@ static void partition(item *items, const range *r, const split *at, range *out_l
     *out_right = right;
 }
 
-void fl_bvh_split(item *items, const range *r, bool are_packed, bool is_halved, range *out_left,
-                  range *out_right)
+void fl_bvh_split(item *items, const range *r, float unit, bool are_packed, bool is_halved,
+                  range *out_left, range *out_right)
 {
     split best = {-1, 0, INFINITY};
     if (!is_halved)
-        best = find_split(items, r, are_packed);
+        best = find_split(items, r, unit, are_packed);
     if (best.axis >= 0) {
         partition(items, r, &best, out_left, out_right);
         return;

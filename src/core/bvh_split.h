@@ -31,9 +31,11 @@ typedef struct range {
     wide_box centers; /**< Of lo + hi: twice the centres. */
 } range;
 
-FL_INLINE float box_half_area(const wide_box *box)
+/** Of the box in units of 1/unit: areas of boxes as large or small as floats go would leave their
+ * range. With a power of two for `unit` all others are the same to the bit. */
+FL_INLINE float box_half_area(const wide_box *box, float unit)
 {
-    fl_wf side = box->hi - box->lo;
+    fl_wf side = (box->hi - box->lo) * unit;
     return side[0] * side[1] + side[1] * side[2] + side[2] * side[0];
 }
 
@@ -56,13 +58,16 @@ FL_INLINE uint32_t leaf_child(uint32_t leaf, uint32_t count)
     return FL_BVH_LEAF | (count - 1) << 28 | leaf;
 }
 
+/** The power of two that brings the longest side of a box near 1. */
+float fl_bvh_unit(const wide_box *box);
+
 /** Items [first, first + count) with their bounds. */
 range fl_bvh_range(const item *items, uint32_t first, uint32_t count);
 
 /** Cut `r`, of two items or more, in two that are not empty: by the surface area heuristic in
  * 16 bins; by count when no plane separates the centres, or for is_halved. Reorders the items.
- * are_packed: as in fl_bvh_input. O(count). */
-void fl_bvh_split(item *items, const range *r, bool are_packed, bool is_halved, range *out_left,
-                  range *out_right);
+ * are_packed: as in fl_bvh_input. unit: of the whole tree, fl_bvh_unit. O(count). */
+void fl_bvh_split(item *items, const range *r, float unit, bool are_packed, bool is_halved,
+                  range *out_left, range *out_right);
 
 #endif

@@ -105,8 +105,8 @@ static bool accel_bvh(fl_compiler *c, fl_tri_mesh *mesh, const fl_bvh_box *boxes
     fl_arena item_arena = {0};
     mesh->bvh = fl_arena_alloc(&c->out->arena, 1, sizeof *mesh->bvh);
     bool ok = mesh->bvh &&
-              (c->is_quick ? fl_bvh_build_quick : fl_bvh_build)(
-                  mesh->bvh, &input, &c->out->arena, &item_arena, c->pool) &&
+              (c->is_quick ? fl_bvh_build_quick : fl_bvh_build)(mesh->bvh, &input, &c->out->arena,
+                                                                &item_arena, c->pool) &&
               allocate_packs(c, mesh, mesh->bvh->leaf_count);
     if (ok) {
         fl_parallel_for(c->pool, mesh->bvh->leaf_count, 1024, fill_bvh_packs, mesh);
@@ -168,6 +168,9 @@ bool fl_compile_accel(fl_compiler *c, fl_tri_mesh *mesh)
  * rounding does to a ray. */
 static const double entry_roundings = 64.0;
 
+/* Nothing reaches so far, and areas and centres of such boxes are still numbers. */
+static const double everywhere = 1e37;
+
 typedef struct entry_box {
     fl_bvh_box box;
     double gain;
@@ -213,10 +216,12 @@ static entry_box bounds_of(const fl_geometry *g, const fl_entry *entry)
     }
     double size = fl_max(fl_v3_max_abs(box.lo), fl_v3_max_abs(box.hi));
     double pad = entry_roundings * FL_EPSILON * (gain * size + base);
+    const double lo[3] = {box.lo.x, box.lo.y, box.lo.z}, hi[3] = {box.hi.x, box.hi.y, box.hi.z};
     entry_box out = {.gain = gain};
-    out.box =
-        (fl_bvh_box){{(float)(box.lo.x - pad), (float)(box.lo.y - pad), (float)(box.lo.z - pad)},
-                     {(float)(box.hi.x + pad), (float)(box.hi.y + pad), (float)(box.hi.z + pad)}};
+    for (int a = 0; a < 3; a++) {
+        out.box.lo[a] = (float)fl_max(lo[a] - pad, -everywhere);
+        out.box.hi[a] = (float)fl_min(hi[a] + pad, everywhere);
+    }
     return out;
 }
 

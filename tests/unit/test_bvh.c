@@ -181,6 +181,55 @@ static void threads_do_not_change_the_tree(void **state)
     free(boxes);
 }
 
+/* Areas of boxes near the ends of floats would be 0 or infinite: the tree is that of the same boxes
+ * of ordinary size. */
+static void size_does_not_change_the_tree(void **state)
+{
+    enum { COUNT = 5000 };
+    static const int exponents[] = {61, 120, -40, -60};
+    (void)state;
+    fl_bvh_box *boxes = random_boxes(COUNT, 5, 0.3f), *scaled = malloc(COUNT * sizeof *scaled);
+    assert_non_null(scaled);
+    fl_arena arena = {0};
+    fl_bvh want, tree;
+    assert_true(build(&want, &arena, boxes, COUNT, 0.0f, true, NULL));
+    for (size_t k = 0; k < FL_COUNT_OF(exponents); k++) {
+        for (uint32_t i = 0; i < COUNT; i++)
+            for (int a = 0; a < 3; a++) {
+                scaled[i].lo[a] = ldexpf(boxes[i].lo[a], exponents[k]);
+                scaled[i].hi[a] = ldexpf(boxes[i].hi[a], exponents[k]);
+            }
+        assert_true(build(&tree, &arena, scaled, COUNT, 0.0f, true, NULL));
+        check_tree(&tree, scaled, COUNT, 0.0f);
+        assert_int_equal(tree.node_count, want.node_count);
+        assert_int_equal(tree.leaf_count, want.leaf_count);
+        assert_memory_equal(tree.items, want.items, want.leaf_count * 8 * sizeof *want.items);
+    }
+    fl_arena_deinit(&arena);
+    free(scaled);
+    free(boxes);
+}
+
+/* One box without end over thousands of small ones: each way to fold the pairs above it costs the
+ * same. */
+static void boxes_without_end_are_held(void **state)
+{
+    enum { COUNT = 3000 };
+    (void)state;
+    fl_bvh_box *boxes = random_boxes(COUNT, 3, 0.01f);
+    for (uint32_t i = 0; i < 40; i++)
+        for (int a = 0; a < 3; a++) {
+            boxes[70 * i].lo[a] = -1e37f;
+            boxes[70 * i].hi[a] = 1e37f;
+        }
+    fl_arena arena = {0};
+    fl_bvh bvh;
+    assert_true(build(&bvh, &arena, boxes, COUNT, 1e30f, false, NULL));
+    check_tree(&bvh, boxes, COUNT, 1e30f);
+    fl_arena_deinit(&arena);
+    free(boxes);
+}
+
 /* Equal boxes cannot be told apart, and ever smaller ones invite a tree as deep as there are boxes.
  */
 static void degenerate_boxes_stay_shallow(void **state)
@@ -290,6 +339,8 @@ int main(void)
         cmocka_unit_test(quick_trees_are_full),
         cmocka_unit_test(every_box_is_held_once),
         cmocka_unit_test(threads_do_not_change_the_tree),
+        cmocka_unit_test(size_does_not_change_the_tree),
+        cmocka_unit_test(boxes_without_end_are_held),
         cmocka_unit_test(degenerate_boxes_stay_shallow),
         cmocka_unit_test(octree_leaves_list_what_overlaps),
         cmocka_unit_test(octree_of_overlapping_boxes_stays_small),
