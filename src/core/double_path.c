@@ -60,9 +60,13 @@ static double largest(fl_vec3 c)
 
 /* --- Sample points: sample_warp_body.inc, in double ------------------------------------------- */
 
-static double number(const path *p, uint32_t set, uint32_t index, uint32_t dimension)
+/* `strata`: how many points the set will have in all, for the stratified sampler. */
+static double number(const path *p, uint32_t set, uint32_t index, uint32_t dimension,
+                     uint32_t strata)
 {
     const fl_params *params = &p->frame->params;
+    if (params->sampler == FL_SAMPLER_STRATIFIED)
+        return (double)fl_sample_stratified(params->seed, p->pixel, index, set, dimension, strata);
     return (double)fl_sample_scalar(params->sampler, params->seed, p->pixel, index, set, dimension);
 }
 
@@ -95,14 +99,17 @@ static branch camera_ray(path *p, uint32_t x, uint32_t y)
 {
     const fl_frame *f = p->frame;
     double jitter_x = f->pixel_x, jitter_y = f->pixel_y, lens_x = 0.0, lens_y = 0.0;
-    uint32_t dimension = 0;
+    uint32_t dimension = 0, strata = f->params.strata;
+    uint32_t pixel_sample = f->params.frozen & FL_FREEZE_PIXEL ? 0 : p->sample;
+    uint32_t lens_sample = f->params.frozen & FL_FREEZE_LENS ? 0 : p->sample;
     if (f->plan.samples_pixel) {
-        jitter_x = number(p, FL_SET_CAMERA, p->sample, dimension++);
-        jitter_y = number(p, FL_SET_CAMERA, p->sample, dimension++);
+        jitter_x = number(p, FL_SET_CAMERA, pixel_sample, dimension++, strata);
+        jitter_y = number(p, FL_SET_CAMERA, pixel_sample, dimension++, strata);
     }
     if (f->plan.samples_lens)
-        warp_aperture(&f->params.camera, number(p, FL_SET_CAMERA, p->sample, dimension),
-                      number(p, FL_SET_CAMERA, p->sample, dimension + 1), &lens_x, &lens_y);
+        warp_aperture(&f->params.camera, number(p, FL_SET_CAMERA, lens_sample, dimension, strata),
+                      number(p, FL_SET_CAMERA, lens_sample, dimension + 1, strata), &lens_x,
+                      &lens_y);
     branch b = {.throughput = {1.0, 1.0, 1.0}, .path = FL_PATH_CAMERA};
     fl_frame_ray(f, x + jitter_x, y + jitter_y, lens_x, lens_y, &b.ray.o, &b.ray.d);
     b.ray.t_max = HUGE_VAL;
@@ -185,10 +192,13 @@ static fl_vec3 light_point(path *p, const spot *at, const fl_frame_light *use,
     double x, y;
     if (!use->draws)
         return center;
-    uint32_t set = fl_set_light(p->frame->params.seed, at->path, use->index);
-    uint32_t index = p->sample * use->samples + j;
+    const fl_params *params = &p->frame->params;
+    uint32_t set = fl_set_light(params->seed, at->path, use->index);
+    uint32_t freeze = at->path == FL_PATH_CAMERA ? fl_freeze_light(use->index) : FL_FREEZE_DEEPER;
+    uint32_t index = (params->frozen & freeze ? 0 : p->sample) * use->samples + j;
+    uint32_t strata = params->strata * use->samples;
     plane_basis(fl_v3_normalize(light->direction), &u, &v);
-    warp_disk(number(p, set, index, 0), number(p, set, index, 1), &x, &y);
+    warp_disk(number(p, set, index, 0, strata), number(p, set, index, 1, strata), &x, &y);
     p->counts.sample_dimensions += 2;
     return fl_v3_mad(fl_v3_mad(center, u, x * light->radius), v, y * light->radius);
 }

@@ -57,12 +57,15 @@ static picture first, second;
 static void frozen_sets_stand_still(void **state)
 {
     (void)state;
-    static const fl_sampler samplers[] = {FL_SAMPLER_SOBOL, FL_SAMPLER_RANDOM, FL_SAMPLER_PADDED};
+    static const fl_sampler samplers[] = {FL_SAMPLER_SOBOL, FL_SAMPLER_RANDOM, FL_SAMPLER_PADDED,
+                                          FL_SAMPLER_STRATIFIED};
     static const uint32_t bits[] = {FL_FREEZE_PIXEL, FL_FREEZE_LENS, FL_FREEZE_DEEPER, 1u << 3};
-    for (size_t s = 0; s < FL_COUNT_OF(samplers); s++) {
+    for (size_t s = 0; s < 2 * FL_COUNT_OF(samplers); s++) {
         world w;
         make_floor(&w, 1.0);
-        w.params.sampler = samplers[s];
+        w.params.sampler = samplers[s / 2];
+        w.params.strata = 8;
+        w.params.precision = s % 2 ? FL_PRECISION_DOUBLE : FL_PRECISION_FLOAT;
         w.params.camera.aperture = 0.4;
         w.params.camera.focus = 4;
         w.materials[0].reflect = gray(0.5);
