@@ -8,10 +8,6 @@
 #include "core/compile.h"
 #include "core/octree.h"
 
-/** Coordinates beyond this are refused: squares and their products with directions must stay finite
- * floats. */
-#define FL_COORDINATE_MAX 1e18
-
 typedef struct fl_compiler {
     const fl_scene *scene;
     const fl_compile_options *options;

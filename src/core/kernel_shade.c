@@ -143,8 +143,12 @@ static void light(const fl_frame *frame, const fl_frame_light *from, uint32_t sa
                 live &= dot3(way, set3(from->normal)) < 0.0f;
             to_light = scale3(way, 1.0f / distance);
             if (from->has_attenuation) {
+                /* Without the terms that are 0: far away they would be 0 times infinity. */
                 const float *a = from->attenuation;
-                color = scale3(color, 1.0f / (a[0] + a[1] * distance + a[2] * square));
+                fl_wf by = fl_wf_set(a[0]);
+                by = a[1] != 0.0f ? by + a[1] * distance : by;
+                by = a[2] != 0.0f ? by + a[2] * square : by;
+                color = scale3(color, 1.0f / by);
             }
         }
         wide3 part = reflectance(frame, stage, i, geometric, to_light);

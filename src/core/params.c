@@ -192,15 +192,19 @@ static bool check_light(const fl_light *light, fl_diags *diags)
     bool is_fine = true;
     if (!is_float3(light->color))
         is_fine = fl_error(diags, light->loc, "a light's 'color' must be finite");
-    if (light->kind != FL_LIGHT_DIRECTIONAL && !is_float3(light->position))
-        is_fine = fl_error(diags, light->loc, "a light's 'position' must be finite");
+    if (light->kind != FL_LIGHT_DIRECTIONAL &&
+        !(fl_v3_max_abs(light->position) <= FL_COORDINATE_MAX && is_float3(light->position)))
+        is_fine =
+            fl_error(diags, light->loc,
+                     "a light's 'position' must be finite and within %g of the world's origin",
+                     FL_COORDINATE_MAX);
     if (light->kind != FL_LIGHT_POINT &&
         !(is_float3(light->direction) && fl_v3_max_abs(light->direction) > 0.0))
         is_fine = fl_error(diags, light->loc, "a light's 'direction' must be finite and not 0 0 0");
-    if (light->kind == FL_LIGHT_DISK && !(light->radius >= 0.0 && is_float(light->radius)))
-        is_fine =
-            fl_error(diags, light->loc, "a light's 'radius' must be 0 or above and finite, got %g",
-                     light->radius);
+    if (light->kind == FL_LIGHT_DISK &&
+        !(light->radius >= 0.0 && light->radius <= FL_COORDINATE_MAX))
+        is_fine = fl_error(diags, light->loc, "a light's 'radius' must be from 0 to %g, got %g",
+                           FL_COORDINATE_MAX, light->radius);
     if (light->samples > FL_LIGHT_SAMPLES_MAX)
         is_fine = fl_error(diags, light->loc, "a light's 'samples' must be from 1 to %d, got %u",
                            FL_LIGHT_SAMPLES_MAX, light->samples);

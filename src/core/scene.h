@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Layer 2: a parsed scene: plain arrays with index handles, a place in the text for everything. Groups
- * and nested transforms are already resolved to one transform per object; nothing is otherwise computed.
- * Units: scene units for lengths, degrees for angles as in the text, linear RGB for colours.
+ * Layer 2: a parsed scene: plain arrays with index handles, a place in the text for everything.
+ * Groups and nested transforms are already resolved to one transform per object; nothing is
+ * otherwise computed. Units: scene units for lengths, degrees for angles as in the text, linear RGB
+ * for colours.
  */
 #ifndef FL_SCENE_H
 #define FL_SCENE_H
@@ -12,6 +13,10 @@
 #include "core/image.h"
 #include "core/mesh.h"
 #include "core/vec.h"
+
+/** Coordinates beyond this are refused: squares and their products with directions must stay finite
+ * floats. */
+#define FL_COORDINATE_MAX 1e18
 
 /** Which course's rules a text follows (scene-format: families). */
 typedef enum fl_dialect {
@@ -24,7 +29,8 @@ typedef enum fl_dialect {
 
 typedef enum fl_projection { FL_PERSPECTIVE, FL_ORTHOGRAPHIC } fl_projection;
 
-/** Camera with its lens: lens values belong to the camera, so bookmarks and snapshots carry them. */
+/** Camera with its lens: lens values belong to the camera, so bookmarks and snapshots carry them.
+ */
 typedef struct fl_camera {
     fl_projection projection;
     fl_vec3 center;
@@ -44,29 +50,31 @@ typedef enum fl_light_kind { FL_LIGHT_DIRECTIONAL, FL_LIGHT_POINT, FL_LIGHT_DISK
 
 typedef struct fl_light {
     fl_light_kind kind;
-    fl_vec3 position;       /**< Point, disk. */
-    fl_vec3 direction;      /**< Directional: from the light into the scene. Disk: its normal. Unit length. */
-    double radius;          /**< Disk; 0 casts one exact ray. */
-    fl_vec3 color;          /**< Radiant intensity; may be negative or above 1. */
-    double attenuation[3];  /**< Divide the colour by a0 + a1 d + a2 d^2; {1, 0, 0} is none. */
-    uint32_t samples;       /**< Disk: shadow rays per hit; 0: not given. */
-    bool is_two_sided;      /**< Disk. */
+    fl_vec3 position;      /**< Point, disk. */
+    fl_vec3 direction;     /**< Directional: from the light into the scene. Disk: its normal. Unit
+                              length. */
+    double radius;         /**< Disk; 0 casts one exact ray. */
+    fl_vec3 color;         /**< Radiant intensity; may be negative or above 1. */
+    double attenuation[3]; /**< Divide the colour by a0 + a1 d + a2 d^2; {1, 0, 0} is none. */
+    uint32_t samples;      /**< Disk: shadow rays per hit; 0: not given. */
+    bool is_two_sided;     /**< Disk. */
     fl_loc loc;
 } fl_light;
 
 typedef enum fl_filter { FL_FILTER_BILINEAR, FL_FILTER_NEAREST } fl_filter;
 
 typedef struct fl_material {
-    fl_vec3 diffuse;          /**< Default 1 1 1. */
-    fl_vec3 specular;         /**< Phong lobe; default 0. */
-    double shininess;         /**< Phong exponent, >= 0. */
-    fl_vec3 ambient;          /**< Multiplies the ambient light; default: diffuse. */
-    bool has_ambient;         /**< False: `ambient` is unset and diffuse (with texture) stands in. */
+    fl_vec3 diffuse;  /**< Default 1 1 1. */
+    fl_vec3 specular; /**< Phong lobe; default 0. */
+    double shininess; /**< Phong exponent, >= 0. */
+    fl_vec3 ambient;  /**< Multiplies the ambient light; default: diffuse. */
+    bool has_ambient; /**< False: `ambient` is unset and diffuse (with texture) stands in. */
     fl_vec3 reflect, refract; /**< Weights of the two branches of the ray tree; 0: none. */
     double refraction_index;  /**< > 0; 1 outside. */
-    uint32_t image;           /**< Texture that multiplies diffuse: index into images, or FL_NONE. */
+    uint32_t image; /**< Texture that multiplies diffuse: index into images, or FL_NONE. */
     fl_filter filter;
-    double texture_scale[2]; /**< Planes: scene units per repeat; elsewhere repeats of u and v. Default 1 1. */
+    double texture_scale[2]; /**< Planes: scene units per repeat; elsewhere repeats of u and v.
+                                Default 1 1. */
     fl_loc loc;
 } fl_material;
 
@@ -117,8 +125,9 @@ typedef struct fl_object {
 } fl_object;
 
 /** A planar curve in the half plane of a surface of revolution about the y axis, as `segment_count`
- *  Bezier segments of equal degree in order: segment i has points[i*(degree+1)] to points[i*(degree+1)+degree].
- *  B-splines are converted when parsed. Only x and y of the points count (z is 0). */
+ *  Bezier segments of equal degree in order: segment i has points[i*(degree+1)] to
+ * points[i*(degree+1)+degree]. B-splines are converted when parsed. Only x and y of the points
+ * count (z is 0). */
 typedef struct fl_profile {
     fl_vec3 *points; /**< segment_count * (degree + 1); in the scene's arena. */
     uint32_t segment_count, degree;
@@ -153,11 +162,19 @@ typedef struct fl_view {
 } fl_view;
 
 /** Order of cube-map faces. */
-enum { FL_CUBE_RIGHT, FL_CUBE_LEFT, FL_CUBE_UP, FL_CUBE_DOWN, FL_CUBE_FRONT, FL_CUBE_BACK, FL_CUBE_FACES };
+enum {
+    FL_CUBE_RIGHT,
+    FL_CUBE_LEFT,
+    FL_CUBE_UP,
+    FL_CUBE_DOWN,
+    FL_CUBE_FRONT,
+    FL_CUBE_BACK,
+    FL_CUBE_FACES
+};
 
 typedef struct fl_background {
-    fl_vec3 color;   /**< What a ray that hits nothing returns. Default 0.5 in the course dialects. */
-    fl_vec3 ambient; /**< Ambient light; default 0. */
+    fl_vec3 color; /**< What a ray that hits nothing returns. Default 0.5 in the course dialects. */
+    fl_vec3 ambient;                    /**< Ambient light; default 0. */
     uint32_t cube_image[FL_CUBE_FACES]; /**< Indices into images; all FL_NONE without a cube map. */
     fl_loc loc;
 } fl_background;
@@ -167,7 +184,8 @@ typedef struct fl_scene {
     fl_arena arena;
     const char *path; /**< Name given to the parser; also what every fl_loc.file here points to. */
     fl_dialect dialect;
-    const char *dialect_reason; /**< Why the text was taken for that dialect; a sentence for `info`. */
+    const char
+        *dialect_reason; /**< Why the text was taken for that dialect; a sentence for `info`. */
     fl_camera camera;
     bool has_camera;
     fl_background background;

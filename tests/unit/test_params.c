@@ -185,6 +185,14 @@ static void lights_are_checked_where_they_stand(void **state)
     assert_string_equal(message_of(&p), "");
     light.direction.y = 0;
     assert_non_null(strstr(message_of(&p), "'direction'"));
+    light.direction.y = -1;
+    light.radius = light.position.z = FL_COORDINATE_MAX;
+    assert_string_equal(message_of(&p), "");
+    light.position.z *= 1.01; /* The square of the way to it would soon be no float. */
+    assert_non_null(strstr(message_of(&p), "'position'"));
+    light.position.z = 0;
+    light.radius *= 1.01;
+    assert_non_null(strstr(message_of(&p), "'radius'"));
 }
 
 int main(void)
