@@ -249,8 +249,9 @@ static bool compile_scene_meshes(fl_compiler *c, fl_arena *scratch)
 
 /* --- Loose triangles ------------------------------------------------------------------------- */
 
-/* Gather those with transform `transform` (FL_NONE: the identity). */
-static bool compile_loose(fl_compiler *c, uint32_t transform, uint32_t count, uint32_t first_object)
+/* Gather the `count` ones that next[] links from first_object on: all of one transform. */
+static bool compile_loose(fl_compiler *c, uint32_t count, uint32_t first_object,
+                          const uint32_t *next)
 {
     const fl_scene *scene = c->scene;
     fl_geometry *g = c->geometry;
@@ -262,10 +263,8 @@ static bool compile_loose(fl_compiler *c, uint32_t transform, uint32_t count, ui
     m->face_object = fl_arena_alloc(&c->out->arena, count, sizeof *m->face_object);
     if (!m->face_object)
         return fl_out_of_memory(c->diags, "the scene's triangles");
-    for (uint32_t i = first_object; i < scene->object_count; i++) {
+    for (uint32_t i = first_object; i != FL_NONE; i = next[i]) {
         const fl_object *object = &scene->objects[i];
-        if (object->kind != FL_OBJECT_TRIANGLE || object->transform != transform)
-            continue;
         for (int k = 0; k < 3; k++)
             box = fl_box_grow(box, object->as.triangle.vertex[k]);
         if (!fl_compile_check_box(c, box, object->loc))
@@ -295,15 +294,18 @@ static bool compile_loose_triangles(fl_compiler *c, fl_arena *scratch)
     uint32_t group_count = scene->transform_count + 1; /* The last is the identity. */
     uint32_t *count = fl_arena_alloc(scratch, group_count, sizeof *count);
     uint32_t *first = fl_arena_alloc(scratch, group_count, sizeof *first);
-    if (!count || !first)
+    uint32_t *next = fl_arena_alloc(scratch, scene->object_count, sizeof *next);
+    if (!count || !first || !next)
         return fl_out_of_memory(c->diags, "the scene's triangles");
-    for (uint32_t i = 0; i < scene->object_count; i++) {
+    for (uint32_t i = scene->object_count; i-- > 0;) {
         uint32_t group = fl_min_u32(scene->objects[i].transform, scene->transform_count);
-        if (scene->objects[i].kind == FL_OBJECT_TRIANGLE && count[group]++ == 0)
-            first[group] = i;
+        if (scene->objects[i].kind != FL_OBJECT_TRIANGLE)
+            continue;
+        next[i] = count[group]++ ? first[group] : FL_NONE;
+        first[group] = i;
     }
     for (uint32_t k = 0; k < group_count; k++)
-        if (count[k] && !compile_loose(c, scene->objects[first[k]].transform, count[k], first[k]))
+        if (count[k] && !compile_loose(c, count[k], first[k], next))
             return false;
     return true;
 }
