@@ -31,19 +31,20 @@ FL_INLINE float shaft_inverse(float d)
 FL_INLINE shaft shaft_of(const chunk *c, float origin_pad)
 {
     shaft s;
-    fl_wf lo[6], hi[6], t = fl_wf_load(c->t);
-    for (int a = 0; a < 3; a++) {
-        lo[a] = hi[a] = fl_wf_load(c->o[a]);
-        lo[3 + a] = hi[3 + a] = fl_wf_load(c->d[a]);
+    fl_wf lo[6], hi[6], t = fl_wf_set(0.0f);
+    for (int k = 0; k < 6; k++) {
+        lo[k] = fl_wf_set(INFINITY);
+        hi[k] = fl_wf_set(-INFINITY);
     }
-    for (uint32_t i = FL_W; i < c->count; i += FL_W) {
-        t = fl_wf_max(t, fl_wf_load(c->t + i));
+    /* A ray that is not a number meets nothing and does not count: it is the first operand. */
+    for (uint32_t i = 0; i < c->count; i += FL_W) {
+        t = fl_wf_max(fl_wf_load(c->t + i), t);
         for (int a = 0; a < 3; a++) {
             fl_wf o = fl_wf_load(c->o[a] + i), d = fl_wf_load(c->d[a] + i);
-            lo[a] = fl_wf_min(lo[a], o);
-            hi[a] = fl_wf_max(hi[a], o);
-            lo[3 + a] = fl_wf_min(lo[3 + a], d);
-            hi[3 + a] = fl_wf_max(hi[3 + a], d);
+            lo[a] = fl_wf_min(o, lo[a]);
+            hi[a] = fl_wf_max(o, hi[a]);
+            lo[3 + a] = fl_wf_min(d, lo[3 + a]);
+            hi[3 + a] = fl_wf_max(d, hi[3 + a]);
         }
     }
     float largest = 0.0f;
