@@ -8,7 +8,7 @@
 #include "core/math64.h"
 
 enum {
-    BAND_ROWS = 16, /* A step of planning; a multiple of the estimate's squares. */
+    BAND_ROWS = FL_SQUARE_SIDE, /* A step of planning. */
     TILE_SIDE = 64, /* Largest: pixels of one sample number are few towards the end of a round. */
     TILE_SIDE_MIN = 16,
     BINS_PER_OCTAVE = 32,

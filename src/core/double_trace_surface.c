@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * The surface at a hit: resolve.c for a ray and an origin that are doubles to the end.
+ * The surface at a hit: kernel_resolve.c for a ray and an origin that are doubles to the end.
  */
 #include <math.h>
 
 #include "core/double_trace.h"
 #include "core/math64.h"
 
-/* Half the spacing of doubles at 1, and how many of those an origin moves (resolve.c). */
+/* Half the spacing of doubles at 1, and how many of those an origin moves (kernel_resolve.c). */
 static const double rounding = 0x1p-53;
 static const double offset_roundings = 16.0, sphere_roundings = 4.0;
 

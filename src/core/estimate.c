@@ -8,7 +8,6 @@
 #include "core/math64.h"
 
 enum {
-    SQUARE_SIDE = 16,
     LEVELS = 32,          /* Powers of two of samples. */
     LEVEL_FIRST_KNOWN = 2 /* 4 samples. */
 };
@@ -44,7 +43,7 @@ struct fl_estimate {
 
 static uint32_t squares_along(uint32_t side_px)
 {
-    return side_px / SQUARE_SIDE + (side_px % SQUARE_SIDE != 0);
+    return side_px / FL_SQUARE_SIDE + (side_px % FL_SQUARE_SIDE != 0);
 }
 
 bool fl_estimate_bytes(uint32_t width, uint32_t height, bool is_adaptive, size_t *out_bytes)
@@ -137,7 +136,7 @@ static double exchange_square(fl_estimate *estimate, const fl_film *film, const 
     double sum = 0.0;
     uint32_t width = square->x1 - square->x0;
     for (uint32_t y = square->y0; y < square->y1; y++) {
-        float mean[3 * SQUARE_SIDE];
+        float mean[3 * FL_SQUARE_SIDE];
         fl_film_row(film, square->x0, y, width, mean);
         size_t at = (size_t)y * estimate->width + square->x0;
         float *old = estimate->snapshot + 3 * at;
@@ -154,9 +153,9 @@ static double exchange_square(fl_estimate *estimate, const fl_film *film, const 
 
 static fl_rect square_rect(const fl_estimate *estimate, uint32_t sx, uint32_t sy)
 {
-    uint32_t x = sx * SQUARE_SIDE, y = sy * SQUARE_SIDE;
-    return (fl_rect){x, y, fl_min_u32(x + SQUARE_SIDE, estimate->width),
-                     fl_min_u32(y + SQUARE_SIDE, estimate->height)};
+    uint32_t x = sx * FL_SQUARE_SIDE, y = sy * FL_SQUARE_SIDE;
+    return (fl_rect){x, y, fl_min_u32(x + FL_SQUARE_SIDE, estimate->width),
+                     fl_min_u32(y + FL_SQUARE_SIDE, estimate->height)};
 }
 
 /* All squares are there: V and its spread. */
@@ -188,10 +187,10 @@ void fl_estimate_capture(fl_estimate *estimate, const fl_film *film, const fl_re
         return;
     uint32_t k = floor_log2(samples);
     size_t count = (size_t)estimate->squares_x * estimate->squares_y;
-    FL_ASSERT(rect->x0 % SQUARE_SIDE == 0 && rect->y0 % SQUARE_SIDE == 0);
+    FL_ASSERT(rect->x0 % FL_SQUARE_SIDE == 0 && rect->y0 % FL_SQUARE_SIDE == 0);
     uint32_t end_x = squares_along(rect->x1), end_y = squares_along(rect->y1);
-    for (uint32_t sy = rect->y0 / SQUARE_SIDE; sy < end_y; sy++)
-        for (uint32_t sx = rect->x0 / SQUARE_SIDE; sx < end_x; sx++) {
+    for (uint32_t sy = rect->y0 / FL_SQUARE_SIDE; sy < end_y; sy++)
+        for (uint32_t sx = rect->x0 / FL_SQUARE_SIDE; sx < end_x; sx++) {
             fl_rect square = square_rect(estimate, sx, sy);
             FL_ASSERT(square.x1 <= rect->x1 && square.y1 <= rect->y1);
             estimate->sums[k * count + (size_t)sy * estimate->squares_x + sx] =
@@ -266,10 +265,11 @@ static uint32_t even_level(const fl_estimate *estimate, uint32_t samples)
 void fl_estimate_capture_round(fl_estimate *estimate, const fl_film *film, const fl_rect *rect,
                                double mean_samples)
 {
-    FL_ASSERT(estimate->pixel_square && rect->x0 % SQUARE_SIDE == 0 && rect->y0 % SQUARE_SIDE == 0);
+    FL_ASSERT(estimate->pixel_square && rect->x0 % FL_SQUARE_SIDE == 0 &&
+              rect->y0 % FL_SQUARE_SIDE == 0);
     double p = exponent_at(estimate, even_level(estimate, (uint32_t)mean_samples));
-    for (uint32_t sy = rect->y0 / SQUARE_SIDE; sy < squares_along(rect->y1); sy++)
-        for (uint32_t sx = rect->x0 / SQUARE_SIDE; sx < squares_along(rect->x1); sx++) {
+    for (uint32_t sy = rect->y0 / FL_SQUARE_SIDE; sy < squares_along(rect->y1); sy++)
+        for (uint32_t sx = rect->x0 / FL_SQUARE_SIDE; sx < squares_along(rect->x1); sx++) {
             fl_rect square = square_rect(estimate, sx, sy);
             double sum = 0.0;
             for (uint32_t y = square.y0; y < square.y1; y++)
@@ -328,7 +328,7 @@ double fl_estimate_square_rmse(const fl_estimate *estimate, uint32_t x, uint32_t
     uint32_t k = even_level(estimate, (uint32_t)fl_max(samples, estimate->round_samples));
     if (samples == 0 || k < LEVEL_FIRST_KNOWN)
         return 0.0;
-    uint32_t sx = x / SQUARE_SIDE, sy = y / SQUARE_SIDE;
+    uint32_t sx = x / FL_SQUARE_SIDE, sy = y / FL_SQUARE_SIDE;
     FL_ASSERT(sx < estimate->squares_x && sy < estimate->squares_y);
     fl_rect r = square_rect(estimate, sx, sy);
     double pixels = (double)(r.x1 - r.x0) * (r.y1 - r.y0), p = exponent_at(estimate, k);
@@ -405,8 +405,8 @@ static void clear_uncaptured(fl_estimate *estimate, const fl_rect *rect, uint32_
 {
     size_t squares = (size_t)estimate->squares_x * estimate->squares_y;
     for (uint32_t k = begin; k < end; k++)
-        for (uint32_t sy = rect->y0 / SQUARE_SIDE; sy < squares_along(rect->y1); sy++)
-            for (uint32_t sx = rect->x0 / SQUARE_SIDE; sx < squares_along(rect->x1); sx++)
+        for (uint32_t sy = rect->y0 / FL_SQUARE_SIDE; sy < squares_along(rect->y1); sy++)
+            for (uint32_t sx = rect->x0 / FL_SQUARE_SIDE; sx < squares_along(rect->x1); sx++)
                 estimate->sums[k * squares + (size_t)sy * estimate->squares_x + sx] = 0.0;
 }
 

@@ -19,6 +19,9 @@
 #include "core/film.h"
 #include "core/schedule.h"
 
+/** Errors are those of squares of so many pixels a side, the first at the film's corner. */
+enum { FL_SQUARE_SIDE = 16 };
+
 /** Predicted error of the current mean. Linear radiance units. */
 typedef struct fl_error_estimate {
     bool is_known; /**< False below 4 samples; all else is then 0. */

@@ -17,7 +17,7 @@ FL_INLINE fl_wf hit_plane(const fl_planes *p, uint32_t k, const bundle *b, fl_wm
 }
 
 /* Lanes of `own` whose ray left its sphere to the inside. Its origin was moved to the side that it
- * leaves to by four roundings of the largest coordinate (resolve.c); rounding takes back 2 sqrt(3)
+ * leaves to by four roundings of the largest coordinate (kernel_resolve.c); rounding takes back 2 sqrt(3)
  * of them at most, and in double nothing is added to that, so the side is certain where the slope
  * is not. `exact`: to the space of the sphere, or NULL. */
 static __attribute__((noinline)) fl_wm starts_inside(const fl_spheres *s, uint32_t k,

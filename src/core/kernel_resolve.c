@@ -352,8 +352,7 @@ static void store_miss(fl_surface *out, uint32_t i)
     out->offset[i] = 1e-30f;
 }
 
-/* What rays of one run have in common: disks and squares solve alike, so do triangles and meshes.
- */
+/* What rays of one run have in common: disks and squares solve alike. */
 typedef struct run_key {
     fl_object_kind kind;
     uint32_t instance;

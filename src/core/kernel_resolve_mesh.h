@@ -13,7 +13,8 @@
  * most 14 such roundings (geometry.h). */
 #define OFFSET_ROUNDINGS 16.0
 
-/** FL_WD vectors. The functions are those of vec.h, operation for operation. */
+/** FL_WD vectors. The functions are those of vec.h, operation for operation, but for
+ * vec_unit: fl_v3_normalize scales first. */
 typedef struct vec {
     fl_wd x, y, z;
 } vec;

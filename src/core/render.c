@@ -414,10 +414,9 @@ bool fl_render_mean(fl_render *render, float *out_rgb, size_t capacity_floats,
     }
 }
 
-/* The lock is held. */
-static void copy_samples(const fl_job *job, float *out_values)
+static void copy_samples(const fl_job *job, uint32_t begin, uint32_t end, float *out_values)
 {
-    for (uint32_t y = 0; y < job->height; y++)
+    for (uint32_t y = begin; y < end; y++)
         for (uint32_t x = 0; x < job->width; x++) {
             uint32_t samples;
             fl_film_samples_row(job->film, x, y, 1, &samples);
@@ -425,35 +424,58 @@ static void copy_samples(const fl_job *job, float *out_values)
         }
 }
 
-/* The lock is held. The error is that of squares: each is asked for once. */
-static void copy_error(const fl_job *job, float *out_values)
+/* The error is that of squares: each is asked for once. */
+static void copy_error(const fl_job *job, uint32_t begin, uint32_t end, float *out_values)
 {
-    enum { SQUARE = 16 };
     uint32_t complete = fl_schedule_complete_samples(job->schedule);
-    for (uint32_t y = 0; y < job->height; y++)
+    for (uint32_t y = begin; y < end; y++)
         for (uint32_t x = 0; x < job->width; x++, out_values++) {
-            if (y % SQUARE != 0)
+            if (y % FL_SQUARE_SIDE != 0)
                 *out_values = *(out_values - job->width);
-            else if (x % SQUARE != 0)
+            else if (x % FL_SQUARE_SIDE != 0)
                 *out_values = *(out_values - 1);
             else
                 *out_values = (float)fl_estimate_square_rmse(job->estimate, x, y, complete);
         }
 }
 
+/* Rows of a map, if `generation` is still the picture. */
+static bool copy_map_rows(fl_render *render, uint64_t generation, fl_render_map map, uint32_t begin,
+                          uint32_t end, float *out_values)
+{
+    pthread_mutex_lock(&render->lock);
+    const fl_job *job = render->shown;
+    bool is_same = job && job->generation == generation;
+    if (is_same)
+        (map == FL_RENDER_SAMPLES ? copy_samples : copy_error)(job, begin, end, out_values);
+    pthread_mutex_unlock(&render->lock);
+    return is_same;
+}
+
+static bool copy_map(fl_render *render, const fl_progress *picture, fl_render_map map,
+                     float *out_values)
+{
+    for (uint32_t y = 0; y < picture->height; y += FL_BAND_ROWS)
+        if (!copy_map_rows(render, picture->generation, map, y,
+                           fl_min_u32(y + FL_BAND_ROWS, picture->height),
+                           out_values + (size_t)picture->width * y))
+            return false;
+    return true;
+}
+
 bool fl_render_copy_map(fl_render *render, fl_render_map map, float *out_values,
                         size_t capacity_floats, fl_progress *out_progress)
 {
-    pthread_mutex_lock(&render->lock);
-    fill_progress(render, render->shown, out_progress);
-    size_t pixels = (size_t)out_progress->width * out_progress->height;
-    bool has_room = pixels > 0 && pixels <= capacity_floats;
-    if (has_room && map == FL_RENDER_SAMPLES)
-        copy_samples(render->shown, out_values);
-    else if (has_room)
-        copy_error(render->shown, out_values);
-    pthread_mutex_unlock(&render->lock);
-    return has_room;
+    for (;;) {
+        pthread_mutex_lock(&render->lock); /* Not a look(): nothing of it is shown. */
+        fill_progress(render, render->shown, out_progress);
+        pthread_mutex_unlock(&render->lock);
+        size_t pixels = (size_t)out_progress->width * out_progress->height;
+        if (pixels == 0 || pixels > capacity_floats)
+            return false;
+        if (copy_map(render, out_progress, map, out_values))
+            return true;
+    }
 }
 
 bool fl_render_pixel(fl_render *render, uint32_t x, uint32_t y, float out_rgb[3],

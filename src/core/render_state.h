@@ -87,11 +87,11 @@ struct fl_render {
     fl_render_limits limits;
     fl_render_state state;
     bool is_paused, has_failed, should_quit, is_notified;
-    bool is_held; /**< As paused, while the owner waits for the units that are out. */
-    uint64_t revision;               /**< Of what is to be shown; from 1. */
-    uint32_t out_units;              /**< Of the current generation, at the workers. */
-    uint32_t stale_units;            /**< Of older ones, at the workers. */
-    uint32_t parked;                 /**< Workers waiting for `work`. */
+    bool is_held;         /**< As paused, while the owner waits for the units that are out. */
+    uint64_t revision;    /**< Of what is to be shown; from 1. */
+    uint32_t out_units;   /**< Of the current generation, at the workers. */
+    uint32_t stale_units; /**< Of older ones, at the workers. */
+    uint32_t parked;      /**< Workers waiting for `work`. */
     double begun_at, cancel_seconds; /**< Of the current generation. */
 
     float
@@ -99,7 +99,7 @@ struct fl_render {
     size_t row_floats;
 };
 
-enum { FL_BAND_ROWS = 32 }; /**< Rows copied at a time; a multiple of 8. */
+enum { FL_BAND_ROWS = 32 }; /**< Rows copied at a time; a multiple of FL_SQUARE_SIDE. */
 
 /** Room that fl_display_picture needs in `rows`. */
 size_t fl_display_floats(uint32_t width);
