@@ -160,6 +160,17 @@ static double mean_samples(const fl_allocation *a)
     return (double)(a->even_samples + a->round_samples) / (double)a->pixels;
 }
 
+/* Where a round that begins now goes: the mean at most doubles. */
+static double next_target(const fl_allocation *a)
+{
+    return fl_min((double)a->goal, 2.0 * mean_samples(a));
+}
+
+uint32_t fl_allocation_begun_samples(const fl_allocation *a)
+{
+    return (uint32_t)ceil(a->phase == PHASE_WEIGH ? next_target(a) : a->round_target);
+}
+
 /* Whether another round is worth its planning; parts of blocks were rounded, so the goal is hit
  * only about. */
 static bool wants_more(const fl_allocation *a)
@@ -428,7 +439,7 @@ static void next_phase(fl_allocation *a)
     if (a->phase == PHASE_MEASURE) {
         a->phase = PHASE_REST;
     } else if (a->phase == PHASE_WEIGH) {
-        a->round_target = fl_min((double)a->goal, 2.0 * mean_samples(a));
+        a->round_target = next_target(a);
         for (giving g = GIVE_BY_SPREAD; g < GIVING_COUNT; g++)
             a->plans[g].level = find_level(&a->plans[g], round_blocks(a));
         a->giving = GIVE_BY_SPREAD;

@@ -62,6 +62,10 @@ bool fl_allocation_must_plan(const fl_allocation *allocation);
  * end of a round. */
 void fl_allocation_plan(fl_allocation *allocation, const fl_film *film, fl_estimate *estimate);
 
+/** The goal of the last round that has begun, rounded up: a goal of so many leaves that round as it
+ * is and begins no other. 0: none has. */
+uint32_t fl_allocation_begun_samples(const fl_allocation *allocation);
+
 /** Samples committed in rounds, all pixels together: what the schedule does not count. */
 uint64_t fl_allocation_samples(const fl_allocation *allocation);
 

@@ -291,9 +291,13 @@ static void fill_progress(const fl_render *render, const fl_job *job, fl_progres
     out_progress->width = job->width;
     out_progress->height = job->height;
     out_progress->complete_samples = fl_schedule_complete_samples(job->schedule);
+    out_progress->begun_samples = fl_schedule_begun_samples(job->schedule);
     uint64_t samples = fl_schedule_total_samples(job->schedule);
-    if (job->allocation)
+    if (job->allocation) {
         samples += fl_allocation_samples(job->allocation);
+        out_progress->begun_samples =
+            fl_max_u32(out_progress->begun_samples, fl_allocation_begun_samples(job->allocation));
+    }
     out_progress->is_adaptive = job->allocation != NULL;
     out_progress->mean_samples = (double)samples / ((double)job->width * job->height);
     out_progress->complete_ranks = fl_schedule_complete_ranks(job->schedule);

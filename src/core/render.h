@@ -61,6 +61,8 @@ typedef struct fl_progress {
     uint32_t complete_samples; /**< Every pixel has this many (adaptive: at most 16 are counted). */
     double mean_samples;     /**< Finer grained; equal to complete_samples when all pixels have the
                                 same. */
+    uint32_t begun_samples;  /**< The least limit that cuts nothing off that has begun: the film
+                                then ends as one that was asked for so many from the start. */
     uint32_t complete_ranks; /**< Bayer ranks of sample 0 that are complete, 0 to 64. */
     double seconds, cpu_seconds;  /**< Since the restart, pauses excluded; of committed units. */
     double first_picture_seconds; /**< From fl_render_restart to rank 0 complete, wall time; 0 until

@@ -381,6 +381,11 @@ uint32_t fl_schedule_complete_samples(const fl_schedule *schedule)
     return schedule->complete_samples;
 }
 
+uint32_t fl_schedule_begun_samples(const fl_schedule *schedule)
+{
+    return schedule->furthest;
+}
+
 uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule)
 {
     return waves[schedule->complete_waves].first_rank;

@@ -72,6 +72,8 @@ uint32_t fl_work_pixels(const fl_work *work, uint32_t x0, uint32_t y0, uint16_t 
 
 /** Samples every pixel has. */
 uint32_t fl_schedule_complete_samples(const fl_schedule *schedule);
+/** The most that any pixel has or is getting: less is no end. */
+uint32_t fl_schedule_begun_samples(const fl_schedule *schedule);
 /** Bayer ranks 0 ... that are complete in the whole picture, 0 to 64; 4 and then 16 more at once. */
 uint32_t fl_schedule_complete_ranks(const fl_schedule *schedule);
 /** Samples committed, all pixels together. */
