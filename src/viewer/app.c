@@ -39,9 +39,11 @@ typedef struct app {
     struct timespec begin;
     uint64_t now_ms;
     vw_pace pace;
-    uint64_t restart_ms;      /**< When to restart; UINT64_MAX: nothing to restart. */
-    uint64_t reload_ms;       /**< When to read the changed files; UINT64_MAX: they did not. */
-    uint64_t done_generation; /**< Last picture announced as done. */
+    uint64_t restart_ms;       /**< When to restart; UINT64_MAX: nothing to restart. */
+    uint64_t reload_ms;        /**< When to read the changed files; UINT64_MAX: they did not. */
+    char dropped[VW_PATH_MAX]; /**< On the window, and not read yet; empty: nothing. */
+    char snapshot[64];         /**< Where the one that is ordered goes. */
+    uint64_t done_generation;  /**< Last picture announced as done. */
     uint32_t done_samples;
     bool wants_refresh; /**< Ask the render without waiting for the next due time. */
     bool needs_draw, has_quit;
@@ -74,64 +76,6 @@ static void show_error(app *a)
 {
     vw_session_take_error(&a->session, &a->diags);
     a->needs_draw = true;
-}
-
-/* The first free name of firstlight-001.png and so on; false: none. */
-static bool free_name(char *out, size_t out_bytes)
-{
-    for (int number = 1; number <= SNAPSHOT_NUMBER_MAX; number++) {
-        snprintf(out, out_bytes, "firstlight-%03d.png", number);
-        if (access(out, F_OK) != 0 && errno == ENOENT)
-            return true;
-    }
-    return false;
-}
-
-/* Save what the film holds and tell everyone. */
-static void save_snapshot(app *a)
-{
-    vw_session *session = &a->session;
-    bool was_exact = session->exact_samples != 0;
-    session->exact_samples = 0;
-    vw_session_set_limits(session);
-    char path[64];
-    fl_progress progress;
-    float *rgb = vw_session_mean(session, &progress, &a->diags);
-    bool is_saved =
-        rgb && (free_name(path, sizeof path) ||
-                fl_environment_error(&a->diags, "no free name for a snapshot is left here"));
-    is_saved = is_saved && vw_session_save(session, path, rgb, &progress, &a->diags);
-    free(rgb);
-    if (!is_saved) {
-        show_error(a);
-        return;
-    }
-    vw_state_say(&session->state, "saved %s, %u samples", path, progress.complete_samples);
-    if (a->record && was_exact)
-        vw_log_write_snapshot(a->record, a->now_ms, path, progress.complete_samples);
-    if (!a->options->is_quiet) {
-        printf("saved %s %u samples\n", path, progress.complete_samples);
-        fflush(stdout);
-    }
-    a->needs_draw = true;
-}
-
-/* A snapshot has whole samples only, so that it can be made again: let the pass under way end
- * first. */
-static void ask_snapshot(app *a)
-{
-    vw_session *session = &a->session;
-    fl_render_progress(session->render, &session->progress);
-    double mean = session->progress.mean_samples;
-    /* The preview of a light is never saved: its whole picture is made first. */
-    bool was_preview = vw_session_end_mix(session);
-    if (was_preview && !vw_session_restart(session, &a->diags)) {
-        show_error(a);
-        return;
-    }
-    session->exact_samples = (uint32_t)fl_max(1.0, ceil(mean));
-    vw_session_set_limits(session);
-    a->wants_refresh = true;
 }
 
 static void print_camera(app *a)
@@ -182,44 +126,61 @@ static void watch_files(app *a)
     free(paths);
 }
 
-/* Changed files are read again as if the key for it had been pressed, which a record keeps. */
+/* When the changed files may be read; UINT64_MAX: they did not change, or are of a scene that may
+ * soon be another. */
+static uint64_t reload_from_ms(const app *a)
+{
+    return a->dropped[0] ? UINT64_MAX : a->reload_ms;
+}
+
+/* Changed files are read again by an event, which a record keeps. */
 static void reload_if_changed(app *a)
 {
     if (vw_watch_take(a->watch))
         a->reload_ms = a->now_ms + RELOAD_QUIET_MS;
-    if (a->now_ms < a->reload_ms)
+    if (a->now_ms < reload_from_ms(a))
         return;
     a->reload_ms = UINT64_MAX;
-    vw_event event = {
-        .kind = VW_EVENT_KEY, .code = GLFW_KEY_R, .action = GLFW_PRESS, .mods = GLFW_MOD_CONTROL};
-    vw_event_push(&a->platform->events, &event);
+    vw_event_push(&a->platform->events, &(vw_event){.kind = VW_EVENT_RELOAD});
 }
 
 /* Read by its own thread; the old picture stays and can be used until then. */
 static void load_scene(app *a, const char *path)
 {
-    if (strlen(path) >= VW_PATH_MAX) {
-        fl_environment_error(&a->diags, "the scene's path is longer than %d bytes",
-                             VW_PATH_MAX - 1);
-        show_error(a);
-        return;
-    }
     const char *slash = strrchr(path, '/');
     vw_state_say(&a->session.state, "reading %s", slash ? slash + 1 : path);
     a->session.state.message_until_ms = UINT64_MAX; /* Until it is read. */
     vw_loading_ask(a->loading, path);
 }
 
+/* Another scene is there from now on: a record says so now, not when it was asked for. */
+static void record_drop(app *a, const char *path)
+{
+    vw_event event = {.kind = VW_EVENT_DROP};
+    snprintf(event.path, sizeof event.path, "%s", path);
+    if (a->record)
+        vw_log_write_event(a->record, a->now_ms, &event);
+}
+
 static void take_loaded(app *a)
 {
     char path[VW_PATH_MAX];
     vw_scene scene;
-    if (!vw_loading_take(a->loading, &scene, path, &a->diags))
+    /* A snapshot that waits is of this scene. */
+    if (a->session.exact_samples || !vw_loading_take(a->loading, &scene, path, &a->diags))
         return;
+    bool is_dropped = strcmp(path, a->dropped) == 0;
+    bool is_other = is_dropped || strcmp(path, a->session.source_path) != 0;
+    if (is_dropped)
+        a->dropped[0] = 0;
     if (!scene.compiled || !vw_session_adopt(&a->session, path, &scene, &a->diags)) {
         a->session.state.message_until_ms = 0; /* "reading" */
         show_error(a);
         return;
+    }
+    if (is_other) {
+        record_drop(a, path);
+        a->reload_ms = UINT64_MAX;
     }
     fl_diags_deinit(&a->diags);
     if (a->diags.error_count == 0)
@@ -231,14 +192,95 @@ static void take_loaded(app *a)
     a->session.revision = 0;
 }
 
+static bool begin_again(app *a)
+{
+    a->restart_ms = UINT64_MAX;
+    if (!vw_session_restart(&a->session, &a->diags)) {
+        show_error(a);
+        a->wants_refresh = true;
+        return false;
+    }
+    fl_progress progress;
+    fl_render_progress(a->session.render, &progress);
+    vw_pace_restart(&a->pace, progress.newest_generation, a->now_ms);
+    a->session.progress.state = progress.state;
+    return true;
+}
+
+/* --- Snapshots -------------------------------------------------------------------------------- */
+
+/* The first free name of firstlight-001.png and so on; false: none. */
+static bool free_name(char *out, size_t out_bytes)
+{
+    for (int number = 1; number <= SNAPSHOT_NUMBER_MAX; number++) {
+        snprintf(out, out_bytes, "firstlight-%03d.png", number);
+        if (access(out, F_OK) != 0 && errno == ENOENT)
+            return true;
+    }
+    return false;
+}
+
+/* What is saved is the picture of the state as it is now: neither the preview of a light, nor what
+ * a restart that waits would replace. */
+static void order_snapshot(app *a)
+{
+    vw_session *session = &a->session;
+    if (session->exact_samples) {
+        vw_session_hurry_order(session);
+        vw_state_say(&session->state, "%s is not whole yet", a->snapshot);
+        return;
+    }
+    if (!free_name(a->snapshot, sizeof a->snapshot)) {
+        fl_environment_error(&a->diags, "no free name for a snapshot is left here");
+        show_error(a);
+        return;
+    }
+    vw_session_end_mix(session);
+    bool is_stale = a->restart_ms != UINT64_MAX || !vw_session_is_asked(session);
+    if (is_stale && !begin_again(a))
+        return;
+    vw_session_order_snapshot(session);
+    if (a->record)
+        vw_log_write_snapshot(a->record, a->now_ms, a->snapshot, session->exact_samples);
+    vw_state_say(&session->state, "%s at sample %u", a->snapshot, session->exact_samples);
+    a->wants_refresh = true;
+}
+
+static void save_snapshot(app *a)
+{
+    fl_progress progress;
+    a->needs_draw = true;
+    if (!vw_session_save_ordered(&a->session, a->snapshot, &progress, &a->diags)) {
+        show_error(a);
+        return;
+    }
+    uint32_t samples = vw_words_samples(&progress);
+    vw_state_say(&a->session.state, "saved %s, %u samples", a->snapshot, samples);
+    if (!a->options->is_quiet) {
+        printf("saved %s %u samples\n", a->snapshot, samples);
+        fflush(stdout);
+    }
+}
+
+/* An ordered snapshot is there, or will never be. */
+static void save_if_whole(app *a)
+{
+    if (vw_session_has_ordered(&a->session)) {
+        save_snapshot(a);
+    } else if (a->session.exact_samples && a->session.progress.state == FL_RENDER_FAILED) {
+        vw_session_end_order(&a->session);
+        vw_state_say(&a->session.state, "%s was not saved: out of memory", a->snapshot);
+    }
+}
+
 /* Do what a command asked for. `is_resize`: restart only when the hand rests. */
 static void apply(app *a, vw_dirty dirty, bool is_resize)
 {
     dirty = vw_session_answer(&a->session, dirty, &a->diags);
     if (a->diags.error_count)
         show_error(a);
-    if (dirty & VW_DIRTY_SCENE)
-        load_scene(a, a->session.scene_path);
+    if ((dirty & VW_DIRTY_SCENE) && !a->dropped[0])
+        load_scene(a, a->session.source_path);
     if (dirty & VW_DIRTY_CAMERA)
         a->restart_ms = is_resize ? a->now_ms + RESIZE_QUIET_MS : earlier(a->restart_ms, a->now_ms);
     if (dirty & VW_DIRTY_LIMITS)
@@ -247,7 +289,7 @@ static void apply(app *a, vw_dirty dirty, bool is_resize)
         a->session.revision = 0;
     a->wants_refresh |= (dirty & (VW_DIRTY_LIMITS | VW_DIRTY_TONEMAP | VW_DIRTY_SHOW)) != 0;
     if (dirty & VW_DIRTY_SNAPSHOT)
-        ask_snapshot(a);
+        order_snapshot(a);
     if (dirty & VW_DIRTY_PRINT)
         print_camera(a);
     if (dirty & VW_DIRTY_PASTE)
@@ -265,15 +307,17 @@ static void take_events(app *a)
 {
     vw_event event;
     while (!a->has_quit && vw_event_pop(&a->platform->events, &event)) {
-        if (a->record)
+        if (a->record && event.kind != VW_EVENT_DROP)
             vw_log_write_event(a->record, a->now_ms, &event);
         vw_dirty dirty = vw_input_event(&a->session.input, &a->session.state, &event, a->now_ms);
         if (event.kind == VW_EVENT_KEY && event.action != 0 && a->session.error_text &&
             (dirty & VW_DIRTY_WINDOW))
             vw_session_clear_error(&a->session);
         apply(a, dirty, event.kind == VW_EVENT_RESIZE);
-        if (event.kind == VW_EVENT_DROP)
+        if (event.kind == VW_EVENT_DROP) {
+            memcpy(a->dropped, event.path, sizeof a->dropped);
             load_scene(a, event.path);
+        }
         if (event.kind == VW_EVENT_PASTE)
             apply(a, vw_session_paste(&a->session, event.path), false);
     }
@@ -285,30 +329,24 @@ static bool is_running(const vw_session *session)
     return !session->state.is_paused && !session->state.is_hidden;
 }
 
-/* When the restart that is due may begin; UINT64_MAX: none is due. */
+/* When the restart that is due may begin; UINT64_MAX: none is due, or a snapshot must be whole
+ * first.
+ */
 static uint64_t restart_from_ms(const app *a)
 {
+    if (a->restart_ms == UINT64_MAX || a->session.exact_samples)
+        return UINT64_MAX;
     uint64_t held_ms = is_running(&a->session) ? vw_pace_held_until_ms(&a->pace) : 0;
     return a->restart_ms > held_ms ? a->restart_ms : held_ms;
 }
 
 static void restart_if_due(app *a)
 {
-    if (a->now_ms < restart_from_ms(a))
-        return;
-    a->restart_ms = UINT64_MAX;
-    /* A snapshot that still waits would show another picture: take it as it is. */
-    if (a->session.exact_samples)
-        save_snapshot(a);
-    if (vw_session_restart(&a->session, &a->diags)) {
-        fl_progress progress;
-        fl_render_progress(a->session.render, &progress);
-        vw_pace_restart(&a->pace, progress.newest_generation, a->now_ms);
-        a->session.progress.state = progress.state;
-    } else {
-        show_error(a);
-        a->wants_refresh = true;
-    }
+    bool is_awaited = a->now_ms >= a->restart_ms || vw_loading_is_busy(a->loading);
+    if (a->session.exact_samples && is_awaited)
+        vw_session_hurry_order(&a->session);
+    if (a->now_ms >= restart_from_ms(a))
+        begin_again(a);
 }
 
 static void announce(app *a)
@@ -322,7 +360,7 @@ static void announce(app *a)
     a->done_generation = progress->generation;
     a->done_samples = progress->complete_samples;
     if (!a->options->is_quiet) {
-        printf("done %u samples %.3f s\n", progress->complete_samples, progress->seconds);
+        printf("done %u samples %.3f s\n", vw_words_samples(progress), progress->seconds);
         fflush(stdout);
     }
 }
@@ -343,8 +381,7 @@ static void refresh_if_due(app *a)
                      session->progress.complete_samples != samples_before;
     if (a->diags.error_count)
         show_error(a);
-    if (session->exact_samples && session->progress.complete_samples >= session->exact_samples)
-        save_snapshot(a);
+    save_if_whole(a);
     announce(a);
 }
 
@@ -377,8 +414,7 @@ static double time_to_sleep(const app *a)
     const vw_session *session = &a->session;
     if (a->platform->events.count > 0)
         return 0.0;
-    uint64_t until =
-        earlier(a->restart_ms == UINT64_MAX ? UINT64_MAX : restart_from_ms(a), a->reload_ms);
+    uint64_t until = earlier(restart_from_ms(a), reload_from_ms(a));
     if (a->needs_draw && !session->state.is_hidden)
         until = earlier(until, vw_pace_draw_from_ms(&a->pace));
     if (vw_input_is_moving(&session->input))
@@ -404,11 +440,11 @@ static bool loop(app *a, fl_diags *diags)
         bool had_message = vw_state_message(&a->session.state) != NULL;
         reload_if_changed(a);
         take_events(a);
-        take_loaded(a);
         a->needs_draw |= vw_session_take_refined(&a->session);
         a->needs_draw |= had_message != (vw_state_message(&a->session.state) != NULL);
         restart_if_due(a);
         refresh_if_due(a);
+        take_loaded(a); /* After the look, which may have saved what it waited for. */
         /* After the look, which may have shown what a restart waited for. */
         restart_if_due(a);
         if (a->needs_draw && may_draw(a) && !draw(a, diags))
@@ -432,7 +468,7 @@ static bool open_record(app *a, fl_diags *diags)
     /* By line: the log of a session that crashes is the one that is needed. */
     setvbuf(a->record, NULL, _IOLBF, 0);
     vw_log_write_header(a->record, a->session.state.width, a->session.state.height,
-                        a->session.scene_path);
+                        a->session.source_path);
     return true;
 }
 

@@ -391,6 +391,10 @@ vw_dirty vw_run_reload(vw_state *state, vw_amount amount)
 vw_dirty vw_run_escape(vw_state *state, vw_amount amount)
 {
     (void)amount;
+    if (state->has_error) {
+        state->has_error = false;
+        return VW_DIRTY_WINDOW;
+    }
     if (state->help_page > 0) {
         state->help_page = 0;
         return VW_DIRTY_WINDOW;

@@ -16,6 +16,7 @@ typedef enum vw_event_kind {
     VW_EVENT_SCROLL,
     VW_EVENT_RESIZE,
     VW_EVENT_DROP,
+    VW_EVENT_RELOAD,  /**< The scene's files have changed: read it again. */
     VW_EVENT_PASTE,   /**< Text of the clipboard, in `path`, on one line. */
     VW_EVENT_FOCUS,   /**< The window lost the keyboard: everything held is released. */
     VW_EVENT_ICONIFY, /**< The window became an icon (action GLFW_PRESS), or a window again. */

@@ -5,7 +5,10 @@
 
 static vw_moment moment_of(const vw_state *state)
 {
-    return (vw_moment){.look = state->look, .mode = state->mode, .pivot = state->pivot};
+    return (vw_moment){.look = state->look,
+                       .mode = state->mode,
+                       .pivot = state->pivot,
+                       .saved_aperture = state->saved_aperture};
 }
 
 static bool is_same_moment(const vw_moment *a, const vw_moment *b)
@@ -29,6 +32,20 @@ void vw_history_begin(vw_history *history, const vw_state *state, bool forgets)
     history->cause = NULL;
 }
 
+static void rebase(vw_moment *moments, uint32_t count, const vw_look *before, const vw_look *start)
+{
+    for (uint32_t i = 0; i < count; i++)
+        if (vw_look_rebase(&moments[i].look, before, start))
+            moments[i].mode = VW_MODE_FLY;
+}
+
+void vw_history_rebase(vw_history *history, const vw_state *state, const vw_look *before)
+{
+    rebase(history->past, history->past_count, before, &state->start);
+    rebase(history->future, history->future_count, before, &state->start);
+    vw_history_begin(history, state, false);
+}
+
 void vw_history_note(vw_history *history, const vw_state *state, const vw_command *cause,
                      bool is_gesture)
 {
@@ -48,6 +65,8 @@ void vw_history_note(vw_history *history, const vw_state *state, const vw_comman
 static vw_dirty go(vw_history *history, vw_state *state, vw_moment *from, uint32_t *from_count,
                    vw_moment *to, uint32_t *to_count, const char *what)
 {
+    while (*from_count > 0 && is_same_moment(&from[*from_count - 1], &history->now))
+        --*from_count; /* A scene that was read again made it the same. */
     if (*from_count == 0) {
         vw_state_say(state, "nothing to %s", what);
         return VW_DIRTY_WINDOW;
@@ -58,6 +77,7 @@ static vw_dirty go(vw_history *history, vw_state *state, vw_moment *from, uint32
     state->look = history->now.look;
     state->mode = history->now.mode;
     state->pivot = history->now.pivot;
+    state->saved_aperture = history->now.saved_aperture;
     state->rack_left = 0;
     vw_state_say(state, "%s", what);
     return (vw_dirty)(VW_DIRTY_CAMERA | VW_DIRTY_TONEMAP | VW_DIRTY_LIMITS);

@@ -17,6 +17,7 @@ typedef struct vw_moment {
     vw_look look;
     vw_mode mode;
     fl_vec3 pivot;
+    double saved_aperture; /**< Comes along: by itself it is no step. */
 } vw_moment;
 
 /** Zero-initialise, then vw_history_begin. */
@@ -31,6 +32,10 @@ typedef struct vw_history {
 /** Take the state as it is, without a step: after loading. `forgets`: another scene, no way back.
  */
 void vw_history_begin(vw_history *history, const vw_state *state, bool forgets);
+
+/** The scene was read again, and `state` rebased on it; `before`: its start till then. Every moment
+ * follows as the state did. */
+void vw_history_rebase(vw_history *history, const vw_state *state, const vw_look *before);
 
 /** Look at what an input did. `cause`: its command (NULL: none of them); `is_gesture`: it goes on
  * with the same command, as a drag does. */

@@ -311,6 +311,9 @@ vw_dirty vw_input_event(vw_input *input, vw_state *state, const vw_event *event,
         state->is_hidden = event->action == GLFW_PRESS;
         dirty |= VW_DIRTY_LIMITS;
         break;
+    case VW_EVENT_RELOAD:
+        dirty |= VW_DIRTY_SCENE;
+        break;
     case VW_EVENT_CLOSE:
         dirty |= VW_DIRTY_QUIT;
         break;

@@ -179,8 +179,10 @@ static bool render_scaled(vw_lab *lab, const vw_lab_question *question, mean *ou
     fl_diags diags = {0};
     fl_compiled *compiled = NULL;
     const fl_geometry *geometry = &question->frames[0]->scene->geometry;
+    if (is_stale(lab, answer->wish))
+        return false;
     if (question->loader->load(question->loader->context, question->path, &scene, &diags) &&
-        scene.scene && scale_scene(question, scene.scene, &diags)) {
+        !is_stale(lab, answer->wish) && scene.scene && scale_scene(question, scene.scene, &diags)) {
         fl_compile_options options = {
             .accel = geometry->accel, .has_isa = true, .isa = question->frames[0]->scene->isa};
         compiled = fl_compile(scene.scene, &options, NULL, &diags);
@@ -221,6 +223,10 @@ static void compare(const mean *a, const mean *b, float *out)
 static bool run_stress(vw_lab *lab, const vw_lab_question *question, vw_lab_answer *answer)
 {
     mean plain = {0}, other = {0};
+    if (question->error[0]) {
+        memcpy(answer->error, question->error, sizeof answer->error);
+        return false;
+    }
     const fl_frame *const *frames = (const fl_frame *const *)question->frames;
     bool is_fine =
         render(lab, frames[0]->scene, &frames[0]->params, question->samples, &plain, answer);

@@ -43,6 +43,8 @@ typedef struct vw_lab_question {
     char path[VW_PATH_MAX];
     vw_state state;
     fl_params base;
+    char error[128]; /**< Stress: why there is nothing to hold the picture against; empty: there is.
+                      */
 } vw_lab_question;
 
 /** Zero-initialise; free with vw_lab_answer_deinit. */

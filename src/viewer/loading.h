@@ -11,7 +11,7 @@
 
 typedef struct vw_loading vw_loading;
 
-/** `loader` is borrowed; its load is called by the thread, never twice at a time. `notify` is
+/** `loader` is borrowed; its load is called by the thread, one load at a time. `notify` is
  * called by the thread when a load has ended. NULL after adding an error. */
 vw_loading *vw_loading_create(const vw_loader *loader, void (*notify)(void *context), void *context,
                               fl_diags *diags);

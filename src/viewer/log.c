@@ -269,6 +269,12 @@ static bool parse_drop(reader *r, vw_log_entry *entry)
     return read_path(r, r->end, "a file", entry->event.path);
 }
 
+static bool parse_reload(reader *r, vw_log_entry *entry)
+{
+    entry->event.kind = VW_EVENT_RELOAD;
+    return read_end(r);
+}
+
 static bool parse_paste(reader *r, vw_log_entry *entry)
 {
     entry->event.kind = VW_EVENT_PASTE;
@@ -332,7 +338,7 @@ static const struct {
     {"focus", parse_focus},     {"snapshot", parse_snapshot}, {"quit", parse_quit},
     {"paste", parse_paste},     {"window", parse_window},     {"iconify", parse_iconify},
     {"restore", parse_restore}, {"axis", parse_axis},         {"pad", parse_pad},
-    {"scale", parse_scale},
+    {"scale", parse_scale},     {"reload", parse_reload},
 };
 
 static bool add_entry(reader *r, const vw_log_entry *entry)
@@ -376,7 +382,8 @@ static bool parse_line(reader *r)
     if (nearest)
         return unknown_name(r, w, "event", nearest);
     return expected(r, w,
-                    "key, button, cursor, scroll, resize, drop, paste, snapshot, window or quit");
+                    "key, button, cursor, scroll, resize, drop, reload, paste, snapshot, window or "
+                    "quit");
 }
 
 static bool parse_header(reader *r)

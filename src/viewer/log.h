@@ -11,6 +11,7 @@
  *     1000 resize 800 600
  *     1100 scale 2
  *     1200 drop other.scene
+ *     1250 reload
  *     1300 paste --camera '0 1 5  0 0 0  0 1 0  40'
  *     1350 axis LEFT_Y -0.5
  *     1360 pad A press

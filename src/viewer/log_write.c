@@ -63,6 +63,9 @@ void vw_log_write_event(FILE *file, uint64_t ms, const vw_event *event)
     case VW_EVENT_DROP:
         fprintf(file, "%llu drop %s", at, event->path);
         break;
+    case VW_EVENT_RELOAD:
+        fprintf(file, "%llu reload", at);
+        break;
     case VW_EVENT_PASTE:
         fprintf(file, "%llu paste %s", at, event->path);
         break;

@@ -24,9 +24,10 @@ static void read_stick(const GLFWgamepadstate *raw, int axis, float *out_axes)
     out_axes[axis + 1] = stepped(fl_clamp(y * scale, -1.0, 1.0));
 }
 
+/* From -1, at rest, to 1. GLFW says 0 of a trigger that the pad's mapping lacks. */
 static float read_trigger(float raw)
 {
-    return stepped(beyond_dead_zone(((double)raw + 1.0) / 2.0));
+    return raw == 0.0f ? 0.0f : stepped(beyond_dead_zone(((double)raw + 1.0) / 2.0));
 }
 
 void vw_pad_tell(GLFWgamepadstate *told, const GLFWgamepadstate *raw, vw_event_queue *queue)

@@ -14,6 +14,7 @@
 #include "viewer/log.h"
 #include "viewer/pace.h"
 #include "viewer/present.h"
+#include "viewer/words.h"
 
 /* Times of one kind, milliseconds. */
 typedef struct times {
@@ -169,7 +170,7 @@ static bool apply(replay *r, vw_dirty dirty, double begin_s)
 {
     dirty = vw_session_answer(&r->session, dirty, r->diags);
     bool needs_restart = (dirty & (VW_DIRTY_CAMERA | VW_DIRTY_SCENE)) != 0;
-    if ((dirty & VW_DIRTY_SCENE) && !load(r, r->session.scene_path))
+    if ((dirty & VW_DIRTY_SCENE) && !load(r, r->session.source_path))
         return false;
     if (dirty & VW_DIRTY_TONEMAP)
         r->session.revision = 0;
@@ -226,7 +227,7 @@ static bool add_snapshot(replay *r, const char *file, const float *rgb, const fl
     report->snapshots = grown;
     vw_snapshot *snapshot = &grown[report->snapshot_count];
     size_t bytes = strlen(file) + 1;
-    *snapshot = (vw_snapshot){.file = malloc(bytes), .samples = progress->complete_samples};
+    *snapshot = (vw_snapshot){.file = malloc(bytes), .samples = vw_words_samples(progress)};
     if (!snapshot->file)
         return fl_out_of_memory(r->diags, "the report");
     memcpy(snapshot->file, file, bytes);
@@ -240,7 +241,10 @@ static bool add_snapshot(replay *r, const char *file, const float *rgb, const fl
 static bool render_exactly(replay *r, uint32_t samples)
 {
     vw_session *session = &r->session;
-    if (!r->is_stale && r->film_samples > 0 && r->film_samples <= samples) {
+    /* Adaptively, where samples go depends on the goals on the way. */
+    bool may_go_on =
+        r->film_samples > 0 && r->film_samples <= samples && !session->scene.params.is_adaptive;
+    if (!r->is_stale && may_go_on) {
         session->exact_samples = samples;
         vw_session_set_limits(session);
     } else if (!restart(r, samples)) {

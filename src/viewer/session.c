@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/image_file.h"
-#include "io/state_text.h"
-
 static uint32_t sample_cap(const vw_session *session)
 {
     uint32_t samples = session->options->limits.samples;
@@ -16,13 +13,16 @@ static uint32_t sample_cap(const vw_session *session)
     return session->scene.samples ? session->scene.samples : VW_SAMPLES_DEFAULT;
 }
 
-static bool set_path(vw_session *session, const char *path, fl_diags *diags)
+/* What was opened, and the scene in it. The path may be session->source_path itself. */
+static bool set_paths(vw_session *session, const char *path, const vw_scene *scene, fl_diags *diags)
 {
-    char copy[VW_PATH_MAX];
-    if ((size_t)snprintf(copy, sizeof copy, "%s", path) >= sizeof copy)
+    size_t bytes = strlen(path) + 1;
+    if (bytes > sizeof session->source_path)
         return fl_error(diags, (fl_loc){0}, "the scene's path is longer than %d bytes",
                         VW_PATH_MAX - 1);
-    memcpy(session->scene_path, copy, sizeof copy);
+    memmove(session->source_path, path, bytes);
+    snprintf(session->scene_path, sizeof session->scene_path, "%s",
+             scene->path[0] ? scene->path : session->source_path);
     return true;
 }
 
@@ -60,10 +60,8 @@ bool vw_session_open(vw_session *session, const vw_options *options, const char 
     session->state.height = height;
     if (!load_keys(session, diags))
         return false;
-    if (!set_path(session, scene_path, diags) ||
-        !options->loader.load(options->loader.context, session->scene_path, &session->scene, diags))
-        return false;
-    if (session->scene.path[0] && !set_path(session, session->scene.path, diags))
+    if (!options->loader.load(options->loader.context, scene_path, &session->scene, diags) ||
+        !set_paths(session, scene_path, &session->scene, diags))
         return false;
     begin_scene(session, diags);
     return !options->pin_path || vw_show_load_pin(session, options->pin_path, diags);
@@ -154,9 +152,9 @@ void vw_session_close(vw_session *session)
     *session = (vw_session){0};
 }
 
-static fl_tonemap tonemap_of(const vw_session *session)
+fl_tonemap vw_session_tonemap(const vw_session *session, const vw_state *state)
 {
-    return (fl_tonemap){.exposure_ev = session->state.look.camera.exposure_ev,
+    return (fl_tonemap){.exposure_ev = state->look.camera.exposure_ev,
                         .truncates = session->scene.params.exact.truncate_bytes};
 }
 
@@ -166,7 +164,7 @@ static void forget_parts(vw_session *session)
 {
     fl_progress progress;
     vw_mix_end(&session->mix);
-    fl_tonemap tonemap = tonemap_of(session);
+    fl_tonemap tonemap = vw_session_tonemap(session, &session->state);
     uint8_t *unseen = malloc(session->rgba_bytes);
     uint64_t revision = 0;
     if (unseen &&
@@ -237,9 +235,33 @@ const uint8_t *vw_session_window(vw_session *session, uint32_t *out_width, uint3
     return session->backdrop;
 }
 
+void vw_session_note_asked(vw_session *session)
+{
+    const vw_state *state = &session->state;
+    session->asked = (vw_asked){.is_known = !state->is_mixing,
+                                .look = state->look,
+                                .width = state->picture_width,
+                                .height = state->picture_height};
+}
+
+bool vw_session_is_asked(const vw_session *session)
+{
+    const vw_state *state = &session->state;
+    const vw_asked *asked = &session->asked;
+    vw_look look = asked->look;
+    look.sample_cap = state->look.sample_cap;
+    look.camera.exposure_ev = state->look.camera.exposure_ev;
+    if (look.camera.aperture == 0.0) /* Then the focus changes no pixel. */
+        look.camera.focus = state->look.camera.focus;
+    return asked->is_known && !state->is_mixing && session->progress.state != FL_RENDER_FAILED &&
+           vw_look_is_same(&look, &state->look) && asked->width == state->picture_width &&
+           asked->height == state->picture_height;
+}
+
 bool vw_session_restart(vw_session *session, fl_diags *diags)
 {
     keep_backdrop(session);
+    session->asked.is_known = false;
     fl_params params;
     vw_state_params(&session->state, &session->scene.params, &params);
     session->show.is_asked = false;
@@ -252,6 +274,7 @@ bool vw_session_restart(vw_session *session, fl_diags *diags)
     }
     if (!fl_render_restart(session->render, session->scene.compiled, &params, diags))
         return false;
+    vw_session_note_asked(session);
     if (session->mix.unit)
         forget_parts(session);
     return true;
@@ -281,28 +304,30 @@ void vw_session_set_limits(vw_session *session)
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
 {
     vw_scene scene = {0};
-    if (strlen(path) >= VW_PATH_MAX)
-        return set_path(session, path, diags);
     if (!session->options->loader.load(session->options->loader.context, path, &scene, diags))
         return false;
     return vw_session_adopt(session, path, &scene, diags);
 }
 
-bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *scene, fl_diags *diags)
+bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, fl_diags *diags)
 {
-    bool is_same = strcmp(path, session->scene_path) == 0;
+    bool is_same = strcmp(path, session->source_path) == 0;
+    if (!set_paths(session, path, scene, diags)) {
+        vw_scene_deinit(scene);
+        return false;
+    }
     end_refining(session);
     vw_scene_deinit(&session->scene);
     session->scene = *scene;
     session->state.is_mixing = false;
     session->show.is_asked = false;
+    session->asked.is_known = false;
     if (is_same) {
+        vw_look before = session->state.start;
         vw_state_rebase(&session->state, &scene->params, scene->compiled, sample_cap(session));
-        vw_history_begin(&session->history, &session->state, false);
-    } else if (set_path(session, scene->path[0] ? scene->path : path, diags)) {
-        begin_scene(session, diags);
+        vw_history_rebase(&session->history, &session->state, &before);
     } else {
-        return false;
+        begin_scene(session, diags);
     }
     if (session->render)
         begin_refining(session);
@@ -331,7 +356,7 @@ static bool refresh_mix(vw_session *session, fl_diags *diags)
     size_t pixels = (size_t)progress.width * progress.height;
     if (!reserve_bytes(session, 4 * pixels, diags))
         return false;
-    fl_tonemap tonemap = tonemap_of(session);
+    fl_tonemap tonemap = vw_session_tonemap(session, &session->state);
     fl_tonemap_rgba8(&tonemap, mix->rgb[0], pixels, session->rgba);
     session->progress = progress;
     session->revision = 1; /* Not 0: there is a picture. */
@@ -340,7 +365,7 @@ static bool refresh_mix(vw_session *session, fl_diags *diags)
 
 static bool is_newer(vw_session *session)
 {
-    fl_tonemap tonemap = tonemap_of(session);
+    fl_tonemap tonemap = vw_session_tonemap(session, &session->state);
     return fl_render_display(session->render, &session->revision, &tonemap, session->rgba,
                              session->rgba_bytes, &session->progress);
 }
@@ -379,68 +404,11 @@ bool vw_session_is_full_sample_new(const vw_session *session)
             fl_render_has_sample(session->mix.unit, session->mix.generations[1]));
 }
 
-float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags)
-{
-    float *rgb = NULL;
-    size_t floats = 0;
-    /* Asked first for its size: the picture to show may not be the one being rendered. */
-    while (!fl_render_mean(session->render, rgb, floats, out_progress)) {
-        floats = (size_t)out_progress->width * out_progress->height * 3;
-        free(rgb);
-        rgb = floats ? malloc(floats * sizeof *rgb) : NULL;
-        if (rgb)
-            continue;
-        if (floats)
-            fl_out_of_memory(diags, "the snapshot");
-        else
-            fl_environment_error(diags, "there is no picture yet");
-        return NULL;
-    }
-    return rgb;
-}
-
-static uint8_t *tonemapped(const vw_session *session, const float *rgb, size_t pixels)
-{
-    uint8_t *bytes = malloc(pixels * 4);
-    if (!bytes)
-        return NULL;
-    fl_tonemap tonemap = tonemap_of(session);
-    fl_tonemap_rgba8(&tonemap, rgb, pixels, bytes);
-    for (size_t i = 0; i < pixels; i++)
-        memmove(bytes + 3 * i, bytes + 4 * i, 3);
-    return bytes;
-}
-
-bool vw_session_save(const vw_session *session, const char *path, const float *rgb,
-                     const fl_progress *progress, fl_diags *diags)
-{
-    fl_pixel_format format;
-    if (!fl_image_format_for(path, diags, &format))
-        return false;
-    size_t pixels = (size_t)progress->width * progress->height;
-    fl_params params;
-    vw_state_params(&session->state, &session->scene.params, &params);
-    const fl_scene *scene = session->scene.scene;
-    fl_state_texts texts;
-    fl_state_texts_fill(&texts, session->scene_path, scene, &params, progress, rgb);
-    fl_image image = {.width = progress->width, .height = progress->height, .format = format};
-    uint8_t *bytes = NULL;
-    if (format == FL_PIXEL_FLOAT) {
-        image.pixels = (void *)(uintptr_t)rgb;
-    } else {
-        image.pixels = bytes = tonemapped(session, rgb, pixels);
-        if (!bytes)
-            return fl_out_of_memory(diags, "the snapshot");
-    }
-    bool is_saved = fl_image_save(path, &image, texts.items, FL_COUNT_OF(texts.items), diags);
-    free(bytes);
-    return is_saved;
-}
-
 void vw_session_clear_error(vw_session *session)
 {
     free(session->error_text);
     session->error_text = NULL;
+    session->state.has_error = false;
 }
 
 void vw_session_take_error(vw_session *session, fl_diags *diags)
@@ -464,5 +432,6 @@ void vw_session_take_error(vw_session *session, fl_diags *diags)
         text = NULL;
     }
     session->error_text = text;
+    session->state.has_error = text != NULL;
     fl_diags_deinit(diags);
 }

@@ -17,9 +17,17 @@
 #include "viewer/show.h"
 #include "viewer/viewer.h"
 
+/** What picture was asked for last: what happens to change back to it needs no restart. */
+typedef struct vw_asked {
+    bool is_known; /**< False: none, of another scene, or it could not be had. */
+    vw_look look;
+    uint32_t width, height;
+} vw_asked;
+
 typedef struct vw_session {
     const vw_options *options; /**< Borrowed. */
-    char scene_path[VW_PATH_MAX];
+    /** What was opened: a scene, or a saved picture; and the scene: the same or that picture's. */
+    char source_path[VW_PATH_MAX], scene_path[VW_PATH_MAX];
     vw_scene scene;
     vw_state state;
     vw_input input;
@@ -32,10 +40,13 @@ typedef struct vw_session {
     uint64_t revision;      /**< Of the bytes in rgba; 0: none, or another tone map is wanted. */
     uint32_t exact_samples; /**< Stop at exactly this many for a snapshot, paused or not; 0: not
                                wanted. */
-    uint8_t *backdrop;      /**< Around a region: the last whole picture, dimmed. Owned. */
+    vw_state ordered;       /**< That snapshot's, of vw_session_order_snapshot. */
+    vw_asked asked;
+    uint8_t *backdrop; /**< Around a region: the last whole picture, dimmed. Owned. */
     uint32_t backdrop_width, backdrop_height, backdrop_rect[4]; /**< rect: of the region in it. */
     vw_mix mix;                                                 /**< Of state.is_mixing. */
     vw_history history;
+    bool was_racking; /**< When the last input had been answered. */
     vw_bookmarks bookmarks;
     bool is_replay; /**< Bookmarks stay in memory. */
     vw_show show;
@@ -58,19 +69,24 @@ void vw_session_close(vw_session *session);
 /** Begin the picture of the current state again. False: `diags` says why, the old picture stays. */
 bool vw_session_restart(vw_session *session, fl_diags *diags);
 
+/** The state's picture is the one that was asked for last, by an answer or a restart, and not in
+ * vain: to begin it again would only throw samples away. */
+bool vw_session_is_asked(const vw_session *session);
+
 /** Tell the render when to stop and whether to pause. */
 void vw_session_set_limits(vw_session *session);
 
-/** Read a scene, keeping the look (same path) or not (another). False: the last good scene stays,
- * `diags` says why. Needs a restart afterwards. */
+/** Read a scene or saved picture, keeping the look (path is source_path) or not (another). False:
+ * the last good scene stays, `diags` says why. Needs a restart afterwards. */
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags);
 
-/** The second half of that: take over a scene that was read from `path`. */
-bool vw_session_adopt(vw_session *session, const char *path, const vw_scene *scene,
-                      fl_diags *diags);
+/** The second half of that: take over a scene that was read from `path`; in any case what it holds
+ * is the session's. */
+bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, fl_diags *diags);
 
 /** Do what the bits of an input ask of a session (picks, undo, bookmarks, the pin) and note the
- * step for undo. Returns the bits with what that made stale. */
+ * step for undo. Returns the bits with what that made stale; without CAMERA when the picture is
+ * still the one that was asked for last. */
 vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags);
 
 /** Answer a pick: focus on what stands at (pick_x, pick_y), the median depth of 5 x 5 pixels,
@@ -120,6 +136,21 @@ bool vw_session_save(const vw_session *session, const char *path, const float *r
 /** Linear means as they are now, from malloc; NULL after adding an error. */
 float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags);
 
+/** Order a snapshot of the state as it is, which must be that of the latest restart: what has begun
+ * of its samples is completed, exact_samples in all, so that the same bytes can be made again.
+ * Until it has been saved the caller neither restarts nor adopts. */
+void vw_session_order_snapshot(vw_session *session);
+/** Something else waits for it. Uneven samples then end amid their round, which may be long, and
+ * the bytes depend on the moment; even ones end soon anyway. */
+void vw_session_hurry_order(vw_session *session);
+/** As of the last refresh: it is there. */
+bool vw_session_has_ordered(const vw_session *session);
+/** Save it, whatever the state is by now, and go on rendering. False after adding an error. */
+bool vw_session_save_ordered(vw_session *session, const char *path, fl_progress *out_progress,
+                             fl_diags *diags);
+/** Forget it and go on. */
+void vw_session_end_order(vw_session *session);
+
 /** Keep the newest errors of `diags` as error_text and empty the list. */
 void vw_session_take_error(vw_session *session, fl_diags *diags);
 void vw_session_clear_error(vw_session *session);
@@ -129,6 +160,9 @@ void vw_session_clear_error(vw_session *session);
 bool vw_session_end_mix(vw_session *session);
 
 /** Private to session*.c. */
+fl_tonemap vw_session_tonemap(const vw_session *session, const vw_state *state);
+/** The state's picture is asked for. */
+void vw_session_note_asked(vw_session *session);
 void vw_show_deinit(vw_show *show);
 vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags);
 /** Pin the picture of a file. False after adding an error. */

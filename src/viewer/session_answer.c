@@ -215,6 +215,20 @@ static unsigned mix_light(vw_session *session, unsigned dirty)
     return goes_on ? VW_DIRTY_TONEMAP : VW_DIRTY_CAMERA;
 }
 
+/* One gesture is one step. All that moves is one: keys that are held take turns with the mouse. */
+static void note_step(vw_session *session)
+{
+    static const vw_command motion = {.name = "motion"};
+    const vw_input *input = &session->input;
+    bool is_racking = session->state.rack_left > 0;
+    bool is_motion = input->last_kind == VW_BIND_HOLD || input->last_kind == VW_BIND_DRAG;
+    bool is_gesture = is_motion || input->last_kind == VW_BIND_WHEEL || is_racking ||
+                      session->was_racking || (input->last && input->last->repeats);
+    session->was_racking = is_racking;
+    vw_history_note(&session->history, &session->state, is_motion ? &motion : input->last,
+                    is_gesture);
+}
+
 vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
 {
     vw_state *state = &session->state;
@@ -235,12 +249,7 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         all |= vw_show_toggle_pin(session, diags);
     if (dirty & VW_DIRTY_RAYS)
         all |= vw_insight_rays(session, diags);
-    /* Before undo: what the events so far did is a step of its own. */
-    const vw_input *input = &session->input;
-    bool is_gesture = input->last_kind == VW_BIND_HOLD || input->last_kind == VW_BIND_DRAG ||
-                      input->last_kind == VW_BIND_WHEEL || state->rack_left > 0 ||
-                      (input->last && input->last->repeats);
-    vw_history_note(&session->history, state, input->last, is_gesture);
+    note_step(session); /* Before undo: what the events so far did is a step of its own. */
     if (dirty & VW_DIRTY_UNDO)
         all |= vw_history_undo(&session->history, state);
     if (dirty & VW_DIRTY_REDO)
@@ -253,8 +262,14 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         state->is_mixing = false;
         all |= VW_DIRTY_CAMERA;
     }
+    if ((all & VW_DIRTY_CAMERA) && vw_session_is_asked(session))
+        all = (all & ~(unsigned)VW_DIRTY_CAMERA) | VW_DIRTY_WINDOW;
+    else if (all & VW_DIRTY_CAMERA)
+        vw_session_note_asked(session);
     if (all & (VW_DIRTY_CAMERA | VW_DIRTY_SHOW | VW_DIRTY_SCENE))
         session->show.is_asked = false;
+    if (session->error_text && !state->has_error)
+        vw_session_clear_error(session); /* Esc took it away. */
     session->show.is_stale |= (all & VW_DIRTY_SHOW) != 0;
     return (vw_dirty)all;
 }

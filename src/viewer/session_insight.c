@@ -167,12 +167,17 @@ static void prepare_stress(vw_session *session, vw_lab_question *question, fl_pa
     }
     if (question->scale > 0.0) {
         question->loader = &session->options->loader;
-        snprintf(question->path, sizeof question->path, "%s", session->scene_path);
+        snprintf(question->path, sizeof question->path, "%s", session->source_path);
         question->state = session->state;
         question->base = session->scene.params;
-    } else {
-        add_frame(session, question, "", params, diags);
+        return;
     }
+    fl_diags why = {0};
+    add_frame(session, question, "", params, &why);
+    if (question->frame_count < 2)
+        snprintf(question->error, sizeof question->error, "%s",
+                 why.count ? why.items[0].message : "out of memory");
+    fl_diags_deinit(&why);
 }
 
 /* The power of two of samples that the picture has come to, within bounds. */

@@ -83,16 +83,10 @@ static bool has_pin(const vw_session *session)
            pin->height == session->progress.height;
 }
 
-static fl_tonemap tonemap_of(const vw_session *session)
-{
-    return (fl_tonemap){.exposure_ev = session->state.look.camera.exposure_ev,
-                        .truncates = session->scene.params.exact.truncate_bytes};
-}
-
 static void tonemap_pin(vw_session *session)
 {
     vw_pin *pin = &session->show.pin;
-    fl_tonemap tonemap = tonemap_of(session);
+    fl_tonemap tonemap = vw_session_tonemap(session, &session->state);
     if (pin->exposure_ev == tonemap.exposure_ev)
         return;
     pin->exposure_ev = tonemap.exposure_ev;
@@ -272,7 +266,7 @@ bool vw_show_compose(vw_session *session, fl_diags *diags)
 {
     vw_show *show = &session->show;
     size_t pixels = (size_t)session->progress.width * session->progress.height;
-    show->is_composed = false;
+    show->is_composed = show->has_difference = false;
     if (pixels == 0 || pixels * 4 > session->rgba_bytes)
         return true;
     bool has_layer = session->state.layer != VW_LAYER_BEAUTY || wanted_kind(&session->state) >= 0;

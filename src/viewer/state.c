@@ -146,20 +146,30 @@ void vw_look_take_lit_colors(vw_look *look)
     }
 }
 
+bool vw_look_rebase(vw_look *look, const vw_look *before, const vw_look *start)
+{
+    bool is_moved = is_same_camera(&look->camera, &before->camera) &&
+                    !is_same_camera(&before->camera, &start->camera);
+    if (is_same_camera(&look->camera, &before->camera))
+        look->camera = start->camera;
+    if (look->depth_limit == before->depth_limit)
+        look->depth_limit = start->depth_limit;
+    if (look->light_samples == before->light_samples)
+        look->light_samples = start->light_samples;
+    if (look->sample_cap == before->sample_cap)
+        look->sample_cap = start->sample_cap;
+    if (vw_lights_are_same(look, before) || look->light_count != start->light_count)
+        vw_look_take_lights(look, start);
+    return is_moved;
+}
+
 void vw_state_rebase(vw_state *state, const fl_params *params, const fl_compiled *compiled,
                      uint32_t sample_cap)
 {
     vw_look before = state->start;
     set_scene(state, params, compiled, sample_cap);
-    if (is_same_camera(&state->look.camera, &before.camera))
-        state->look.camera = state->start.camera;
-    if (state->look.depth_limit == before.depth_limit)
-        state->look.depth_limit = state->start.depth_limit;
-    if (state->look.light_samples == before.light_samples)
-        state->look.light_samples = state->start.light_samples;
-    if (vw_lights_are_same(&state->look, &before) ||
-        state->look.light_count != state->start.light_count)
-        vw_look_take_lights(&state->look, &state->start);
+    if (vw_look_rebase(&state->look, &before, &state->start))
+        state->mode = VW_MODE_FLY; /* What was orbited may be elsewhere. */
     state->light = fl_min_u32(state->light, fl_max_u32(state->look.light_count, 1) - 1);
     set_picture(state, params, state->follows_window);
 }
@@ -170,7 +180,7 @@ void vw_state_params(const vw_state *state, const fl_params *base, fl_params *ou
     out_params->camera = state->look.camera;
     out_params->depth_limit = state->look.depth_limit;
     out_params->light_samples = state->look.light_samples;
-    if (state->look.light_count > 0)
+    if (state->look.light_count > 0 && state->look.light_count == base->light_count)
         out_params->lights = state->look.lights;
     if (state->follows_window) {
         out_params->width = state->picture_width;

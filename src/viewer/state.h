@@ -160,6 +160,7 @@ typedef struct vw_state {
     uint32_t rays_x, rays_y, rays_sample; /**< Picture pixels. */
     double cursor_x, cursor_y;            /**< Picture pixels. */
     /* Window. */
+    bool has_error;     /**< An error is shown; cleared, it goes with the next answer. */
     uint32_t help_page; /**< 1 to VW_HELP_PAGES; 0: no help. */
     bool is_hud_shown, is_paused;
     bool is_refining;       /**< Better hierarchies are on their way. */
@@ -214,6 +215,10 @@ bool vw_lights_are_same(const vw_look *a, const vw_look *b);
 /** Lights of another look of the same scene; and: a light that is on comes back to its colour. */
 void vw_look_take_lights(vw_look *look, const vw_look *from);
 void vw_look_take_lit_colors(vw_look *look);
+
+/** `before` was the scene's start and `start` is now: what the look had of the one becomes that of
+ * the other, what was changed stays; lights only while they are as many. True: another camera. */
+bool vw_look_rebase(vw_look *look, const vw_look *before, const vw_look *start);
 
 /** Whether both ask for the same picture, exposure and limits included. */
 bool vw_look_is_same(const vw_look *a, const vw_look *b);

@@ -26,8 +26,9 @@ typedef struct vw_scene {
 typedef struct vw_loader {
     void *context;
     /** Load `path`, which may go afterwards. False after adding an error; *out is then to be left
-     * zeroed. Called on the thread of vw_run or vw_replay_run at the start, and by a thread of the
-     * window on reload and when a file is dropped on it; never twice at a time. */
+     * zeroed. Called on the thread of vw_run or vw_replay_run at the start, by a thread of the
+     * window on reload and when a file is dropped on it, and by the one that measures: two may call
+     * at a time. */
     bool (*load)(void *context, const char *path, vw_scene *out, fl_diags *diags);
 } vw_loader;
 

@@ -76,10 +76,17 @@ static void add_mods(buffer *b, int mods)
         add(b, "Alt+");
 }
 
+static void button_label(int code, char out[16])
+{
+    static const char *const buttons[] = {"left", "right", "middle"};
+    bool has_word = code < (int)FL_COUNT_OF(buttons);
+    snprintf(out, 16, has_word ? "%s" : "button %s",
+             has_word ? buttons[code] : vw_button_name(code));
+}
+
 void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platform *platform,
                    char out[VW_KEYS_MAX])
 {
-    static const char *const buttons[] = {"left", "right", "middle"};
     buffer b = {out, VW_KEYS_MAX, 0};
     char label[16];
     int last_mods = 0;
@@ -104,10 +111,9 @@ void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platfo
             }
             break;
         case VW_BIND_DRAG:
-            add(&b, "%s drag", buttons[binding->code]);
-            break;
         case VW_BIND_CLICK:
-            add(&b, "%s click", buttons[binding->code]);
+            button_label(binding->code, label);
+            add(&b, "%s %s", label, binding->kind == VW_BIND_DRAG ? "drag" : "click");
             break;
         case VW_BIND_WHEEL:
             add(&b, "wheel");
@@ -182,7 +188,7 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
     snprintf(s->value, sizeof s->value, "%s", word);
     s->is_alarm = progress->state == FL_RENDER_FAILED;
     s = item(out, count, "samples");
-    snprintf(s->value, sizeof s->value, "%u/%u", progress->complete_samples,
+    snprintf(s->value, sizeof s->value, "%u/%u", vw_words_samples(progress),
              state->look.sample_cap);
     s = item(out, count, "time");
     snprintf(s->value, sizeof s->value, progress->seconds < 100.0 ? "%.1f s" : "%.0f s",
@@ -235,6 +241,12 @@ uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
     }
     FL_ASSERT(count <= VW_STATUS_MAX);
     return count;
+}
+
+uint32_t vw_words_samples(const fl_progress *progress)
+{
+    return progress->is_adaptive ? (uint32_t)(progress->mean_samples + 0.5)
+                                 : progress->complete_samples;
 }
 
 void vw_words_percent(double value, char out[24])

@@ -29,6 +29,9 @@ typedef struct vw_status {
 uint32_t vw_words_status(const vw_state *state, const fl_progress *progress,
                          vw_status out[VW_STATUS_MAX]);
 
+/** Samples a pixel, the mean where they are uneven: what was asked for and what is saved. */
+uint32_t vw_words_samples(const fl_progress *progress);
+
 /** A part of white as people read it: "0.41 %". */
 void vw_words_percent(double value, char out[24]);
 /** "0.3 s", "14 s", "3 min", "2.1 h". */

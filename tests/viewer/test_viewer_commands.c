@@ -440,6 +440,18 @@ static void escape_twice_quits_in_time(void **unused)
                      VW_DIRTY_QUIT);
 }
 
+static void escape_takes_an_error_away_first(void **unused)
+{
+    (void)unused;
+    vw_state state = state_of_test();
+    state.has_error = true;
+    run(&state, "escape", 1.0);
+    assert_false(state.has_error);
+    assert_int_equal(state.quit_armed_ms, 0);
+    run(&state, "escape", 1.0);
+    assert_int_not_equal(state.quit_armed_ms, 0);
+}
+
 static void drag_click_and_wheel_reach_their_commands(void **unused)
 {
     (void)unused;
@@ -522,6 +534,7 @@ int main(void)
         cmocka_unit_test(a_tap_moves_one_step_and_shift_four),
         cmocka_unit_test(control_s_saves_and_does_not_fly),
         cmocka_unit_test(escape_twice_quits_in_time),
+        cmocka_unit_test(escape_takes_an_error_away_first),
         cmocka_unit_test(drag_click_and_wheel_reach_their_commands),
         cmocka_unit_test(resize_follows_or_fits),
         cmocka_unit_test(controls_page_names_every_command),

@@ -34,7 +34,10 @@ static void undo_and_redo_walk_the_same_looks(void **unused)
         assert_false(i != STEPS - 1 && vw_look_is_same(&looks[i], &looks[i + 1]));
     }
     for (size_t i = STEPS; i-- > 0;) {
-        assert_true(tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, ms += 10) & VW_DIRTY_CAMERA);
+        /* Exposure, cap and orbit about what is in focus are no other picture. */
+        bool is_other = keys[i] != GLFW_KEY_B && keys[i] != GLFW_KEY_X && keys[i] != GLFW_KEY_TAB;
+        vw_dirty dirty = tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, ms += 10);
+        assert_int_equal((dirty & VW_DIRTY_CAMERA) != 0, is_other);
         assert_true(vw_look_is_same(&looks[i], &session.state.look));
     }
     assert_int_equal(session.state.mode, VW_MODE_FLY);
@@ -71,6 +74,116 @@ static void a_gesture_is_one_step(void **unused)
     for (uint64_t i = 0; i < 2 * VW_HISTORY_MAX; i++)
         tap(&session, GLFW_KEY_B, i % 40 < 20 ? 0 : GLFW_MOD_SHIFT, 200000 + 1000 * i);
     assert_int_equal(session.history.past_count, VW_HISTORY_MAX);
+    vw_session_close(&session);
+}
+
+static void flying_and_looking_is_one_step(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_look before = session.state.look;
+    vw_event key = {.kind = VW_EVENT_KEY, .code = GLFW_KEY_W, .action = GLFW_PRESS};
+    vw_event button = {.kind = VW_EVENT_BUTTON, .action = GLFW_PRESS};
+    send(&session, &key, 0);
+    send(&session, &button, 0);
+    for (uint64_t i = 1; i < 60; i++) {
+        vw_event cursor = {.kind = VW_EVENT_CURSOR, .x = (double)i};
+        send(&session, &cursor, 20 * i);
+        vw_event nothing = {.kind = VW_EVENT_SCALE, .x = 1.0};
+        send(&session, &nothing, 20 * i + 10);
+    }
+    assert_int_equal(session.history.past_count, 1);
+    tap(&session, GLFW_KEY_RIGHT_BRACKET, 0, 1210); /* Not motion: a step between two. */
+    send(&session, &(vw_event){.kind = VW_EVENT_SCALE, .x = 1.0}, 1230);
+    assert_int_equal(session.history.past_count, 3);
+    for (uint64_t i = 0; i < 3; i++) {
+        key.action = GLFW_RELEASE;
+        send(&session, &key, 1235);
+        tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 1240 + i);
+    }
+    assert_true(vw_look_is_same(&before, &session.state.look));
+    vw_session_close(&session);
+}
+
+static void a_rack_is_one_step(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_state_focus_at(&session.state, 2.0);
+    vw_state_focus_at(&session.state, 8.0);
+    send(&session, &(vw_event){.kind = VW_EVENT_SCALE, .x = 1.0}, 500);
+    tap(&session, GLFW_KEY_G, 0, 1000);
+    uint32_t steps = session.history.past_count;
+    for (uint64_t ms = 1016; ms < 3200; ms += 16)
+        send(&session, &(vw_event){.kind = VW_EVENT_SCALE, .x = 1.0}, ms);
+    assert_true(session.state.look.camera.focus == 2.0);
+    assert_int_equal(session.history.past_count, steps + 1);
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 4000);
+    assert_true(session.state.look.camera.focus == 8.0);
+    vw_session_close(&session);
+}
+
+/* Samples are thrown away for another picture only (decision 15). */
+static void what_is_rendered_is_not_begun_again(void **unused)
+{
+    (void)unused;
+    static const struct {
+        int key, mods;
+        bool is_other;
+    } taps[] = {
+        {GLFW_KEY_B, 0, false},
+        {GLFW_KEY_Z, GLFW_MOD_CONTROL, false},
+        {GLFW_KEY_X, 0, false},
+        {GLFW_KEY_R, 0, false},
+        {GLFW_KEY_TAB, 0, false},
+        {GLFW_KEY_TAB, 0, false},
+        {GLFW_KEY_5, GLFW_MOD_CONTROL, false},
+        {GLFW_KEY_5, 0, false},
+        {GLFW_KEY_RIGHT_BRACKET, 0, true},
+        {GLFW_KEY_5, 0, true},
+        {GLFW_KEY_RIGHT_BRACKET, 0, true},
+        {GLFW_KEY_R, 0, true},
+        {GLFW_KEY_R, 0, false},
+    };
+    vw_options options = viewer_test_options();
+    vw_session session;
+    fl_diags diags = {0};
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    session.is_replay = true; /* Bookmarks stay in memory. */
+    assert_true(vw_session_restart(&session, &diags));
+    for (size_t i = 0; i < FL_COUNT_OF(taps); i++) {
+        vw_dirty dirty = tap(&session, taps[i].key, taps[i].mods, 1000 * (i + 1));
+        assert_true(dirty != VW_DIRTY_NONE);
+        if (((dirty & VW_DIRTY_CAMERA) != 0) != taps[i].is_other)
+            fail_msg("input %zu", i);
+    }
+    /* What could not be had is asked for again. */
+    session.state.look.camera.aperture = -1.0;
+    assert_false(vw_session_restart(&session, &diags));
+    assert_false(vw_session_is_asked(&session));
+    fl_diags_deinit(&diags);
+    session.state.look = session.state.start;
+    assert_true(tap(&session, GLFW_KEY_R, 0, 90000) & VW_DIRTY_CAMERA);
+    vw_session_close(&session);
+}
+
+static void the_lens_that_reset_forgets_comes_back(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    tap(&session, GLFW_KEY_RIGHT_BRACKET, 0, 1000);
+    double aperture = session.state.look.camera.aperture;
+    tap(&session, GLFW_KEY_O, 0, 2000);
+    tap(&session, GLFW_KEY_R, 0, 3000);
+    tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 4000);
+    tap(&session, GLFW_KEY_O, 0, 5000);
+    assert_true(session.state.look.camera.aperture == aperture);
     vw_session_close(&session);
 }
 
@@ -370,6 +483,10 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(undo_and_redo_walk_the_same_looks),
         cmocka_unit_test(a_gesture_is_one_step),
+        cmocka_unit_test(flying_and_looking_is_one_step),
+        cmocka_unit_test(a_rack_is_one_step),
+        cmocka_unit_test(what_is_rendered_is_not_begun_again),
+        cmocka_unit_test(the_lens_that_reset_forgets_comes_back),
         cmocka_unit_test(bookmarks_stay_beside_the_scene),
         cmocka_unit_test(cameras_read_back_from_both_texts),
         cmocka_unit_test(racking_arrives_on_time_and_exactly),

@@ -115,6 +115,23 @@ static void keys_do_what_the_file_says(void **unused)
     }
 }
 
+static void every_button_has_a_name(void **unused)
+{
+    (void)unused;
+    static const char text[] = "focus-at = 8\npan = Alt+4\nlook = middle\n";
+    static vw_keymap keymap;
+    char keys[VW_KEYS_MAX];
+    fl_diags diags = {0};
+    vw_keymap_init(&keymap);
+    assert_true(vw_keymap_parse(&keymap, text, strlen(text), "keys", &diags));
+    static const char *const expected[][2] = {
+        {"focus-at", "button 8 click"}, {"pan", "Alt+button 4 drag"}, {"look", "middle drag"}};
+    for (size_t i = 0; i < FL_COUNT_OF(expected); i++) {
+        vw_words_keys(vw_command_named(expected[i][0]), &keymap, NULL, keys);
+        assert_string_equal(keys, expected[i][1]);
+    }
+}
+
 static void a_gamepad_flies(void **unused)
 {
     (void)unused;
@@ -230,6 +247,12 @@ static void a_made_up_gamepad_says_what_a_real_one_would(void **unused)
     /* Unplugged: everything is let go. */
     vw_pad_tell(&told, NULL, &queue);
     assert_int_equal(queue.count, 2);
+    while (vw_event_pop(&queue, &event))
+        assert_true(event.x == 0.0);
+    /* One without triggers in its mapping: at rest it flies nowhere. */
+    raw = (GLFWgamepadstate){0};
+    vw_pad_tell(&told, &raw, &queue);
+    assert_int_equal(queue.count, 0);
     vw_event_queue_deinit(&queue);
 }
 
@@ -299,6 +322,7 @@ int main(void)
         cmocka_unit_test(errors_stand_at_their_place),
         cmocka_unit_test(no_chord_reaches_two_commands),
         cmocka_unit_test(keys_do_what_the_file_says),
+        cmocka_unit_test(every_button_has_a_name),
         cmocka_unit_test(a_gamepad_flies),
         cmocka_unit_test(a_made_up_gamepad_says_what_a_real_one_would),
         cmocka_unit_test(a_gamepad_is_recorded),

@@ -53,6 +53,7 @@ static const struct {
     {HEAD "1 drop\n", 2, 7, "expected a file"},
     {HEAD "1 snapshot out.png\n", 2, 12, "expected a file and a number of samples"},
     {HEAD "1 snapshot out.png 0\n", 2, 20, "the number of samples must be 1"},
+    {HEAD "1 reload now\n", 2, 10, "expected the end of the line"},
     {HEAD "1 quit now\n", 2, 8, "expected the end of the line"},
 };
 
@@ -122,6 +123,7 @@ static void what_is_written_reads_back(void **unused)
          .mods = GLFW_MOD_CONTROL | GLFW_MOD_SUPER},
         {.kind = VW_EVENT_RESIZE, .width = 1, .height = 16384},
         {.kind = VW_EVENT_DROP, .path = "/some where/b.scene"},
+        {.kind = VW_EVENT_RELOAD},
         {.kind = VW_EVENT_FOCUS},
         {.kind = VW_EVENT_AXIS, .code = GLFW_GAMEPAD_AXIS_LEFT_Y, .x = -0.53125},
         {.kind = VW_EVENT_PAD, .code = GLFW_GAMEPAD_BUTTON_DPAD_UP, .action = GLFW_PRESS},

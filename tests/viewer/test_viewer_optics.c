@@ -191,6 +191,12 @@ static void views_show_without_touching_the_film(void **unused)
     vw_session_answer(&session, vw_input_event(&session.input, &session.state, &space, 30), &diags);
     assert_true(vw_session_refresh(&session, &diags));
     assert_memory_not_equal(vw_session_shown(&session), plain, bytes);
+    /* A picture of another size is not compared, and no number says otherwise. */
+    session.state.look.region[2] = session.state.look.region[3] = 16;
+    assert_true(vw_session_restart(&session, &diags));
+    assert_true(fl_render_wait(session.render, -1.0));
+    assert_true(vw_session_refresh(&session, &diags));
+    assert_false(session.show.has_difference);
     assert_int_equal(diags.error_count, 0);
     free(plain);
     free(before);

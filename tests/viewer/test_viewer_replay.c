@@ -217,6 +217,10 @@ static void a_broken_scene_keeps_the_good_one(void **unused)
     assert_string_equal(session.scene_path, VIEWER_TEST_SCENE);
     vw_session_take_error(&session, &diags);
     assert_non_null(strstr(session.error_text, "broken.txt:2:21: error:"));
+    assert_true(session.state.has_error);
+    session.state.has_error = false; /* As Esc does. */
+    vw_session_answer(&session, VW_DIRTY_WINDOW, &diags);
+    assert_null(session.error_text);
     session.state.look.camera.center.x = 3.0;
     assert_true(vw_session_load(&session, VIEWER_TEST_SCENE, &diags));
     assert_true(session.state.look.camera.center.x == 3.0);

@@ -300,6 +300,29 @@ static void the_stress_lens_finds_what_changes(void **unused)
     vw_session_close(&session);
 }
 
+/* Six times J: focused so near that no lens so wide can be. */
+static void a_stress_that_cannot_be_says_so(void **unused)
+{
+    (void)unused;
+    char path[256], notes[1024];
+    write_file("wide.txt",
+               "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40\n"
+               "width 16 height 16 aperture 7000 focus 6 }\n"
+               "Materials { numMaterials 1 Material { diffuseColor 1 1 1 } }\n"
+               "Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }\n",
+               path);
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, path);
+    for (uint64_t i = 0; i < VW_STRESS_NEAR; i++)
+        tap(&session, GLFW_KEY_J, 0, 100 * i);
+    assert_int_equal(session.state.stress, VW_STRESS_NEAR);
+    settle(&session, 1);
+    vw_session_notes(&session, notes, sizeof notes);
+    assert_non_null(strstr(notes, "stress, focus 1e-6: 'aperture' must be at most"));
+    vw_session_close(&session);
+}
+
 static void nobody_waits_for_measurements(void **unused)
 {
     (void)unused;
@@ -324,6 +347,12 @@ static void nobody_waits_for_measurements(void **unused)
     assert_int_equal(diags.error_count, 0);
 }
 
+static int finish(void **unused)
+{
+    (void)unused;
+    return remove_files((const char *const[]){"wide.txt"}, 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,7 +362,8 @@ int main(void)
         cmocka_unit_test(the_noise_is_split_and_light_samples_offered),
         cmocka_unit_test(the_trade_curve_shows_where_the_picture_is),
         cmocka_unit_test(the_stress_lens_finds_what_changes),
+        cmocka_unit_test(a_stress_that_cannot_be_says_so),
         cmocka_unit_test(nobody_waits_for_measurements),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, make_folder, finish);
 }

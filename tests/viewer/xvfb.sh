@@ -14,7 +14,7 @@ fi
 
 here=$(realpath "$(dirname "$0")")
 [ -x "$1" ] || { echo "FAILED: no program $1"; exit 1; }
-program=$(realpath "$1") scene=$(realpath "$2")
+program=$(realpath "$1") scene=$(realpath "$2") original=$(realpath "$2")
 folder=${3:-}
 work=$(mktemp -d) viewer=
 cleanup() {
@@ -125,6 +125,16 @@ rests 'as an icon'
 wm_state normal
 before=$(ticks)
 until [ "$(($(ticks) - before))" -gt 20 ]; do xdotool sleep 0.1; done # It goes on.
+
+# A snapshot in the middle, and off: it is of where it was asked for, whole, and nothing is done.
+xdotool key d F12 keydown d
+expect 'saved firstlight-002.png '
+samples=${line#saved firstlight-002.png }
+grep -q "snapshot firstlight-002.png ${samples% samples}\$" session.log || fail "the log has other samples than '$line'"
+xdotool keyup d key c
+until case $line in --camera*) ;; done*) fail "'$line' of a picture that goes on" ;; *) false ;; esac; do
+    read -r -t 60 line <&3 || fail 'no camera came'
+done
 xdotool key r # 16 samples again
 settle
 
@@ -170,7 +180,15 @@ viewer=
 [ "$code" = 0 ] || fail "exit code $code: $(cat errors)"
 [ ! -s errors ] || fail "standard error: $(cat errors)"
 grep -q '^[0-9]* quit$' session.log || fail 'the log does not end'
+
+# With the scene as it was then the record makes the snapshots again.
+mkdir taken
+mv firstlight-00[12].png taken
+cp "$original" live.txt
 "$program" replay session.log --quiet >/dev/null || fail 'the recorded log does not replay'
+for taken in firstlight-00[12].png; do
+    cmp "taken/$taken" "$taken" || fail "the record makes another $taken"
+done
 
 # The snapshot opens where it was taken.
 "$program" render firstlight-001.png -o again.png --quiet || fail 'the snapshot does not open'
