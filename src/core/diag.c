@@ -47,6 +47,19 @@ static void copy_printable(char *out, const char *text, size_t bytes)
     out[bytes] = '\0';
 }
 
+/* The same text without the piece of a UTF-8 character that cutting may have left at its end. */
+static size_t whole_characters(const char *text, size_t bytes)
+{
+    size_t begin = bytes;
+    while (begin > 0 && bytes - begin < 3 && ((unsigned char)text[begin - 1] & 0xc0) == 0x80)
+        begin--;
+    if (begin == 0 || (unsigned char)text[begin - 1] < 0xc0)
+        return bytes; /* plain, or no UTF-8 at all */
+    unsigned char lead = (unsigned char)text[begin - 1];
+    size_t wanted = lead >= 0xf0 ? 3 : lead >= 0xe0 ? 2 : 1;
+    return bytes - begin < wanted ? begin - 1 : bytes;
+}
+
 /* The list is full: give up the newest warning, with its notes, in favour of an error. */
 static bool drop_newest_warning(fl_diags *diags)
 {
@@ -82,13 +95,15 @@ static void add(fl_diags *diags, fl_severity severity, fl_cause cause, fl_loc lo
     char message[MESSAGE_BYTES];
     int printed = vsnprintf(message, sizeof message, format, args);
     size_t message_bytes = printed < 0 ? 0 : strlen(message);
+    if (printed >= (int)sizeof message)
+        message_bytes = whole_characters(message, message_bytes);
     const char *line = NULL;
     size_t line_bytes = 0;
     if (has_room && loc.file && loc.line > 0 && diags->text && diags->text_file &&
         strcmp(loc.file, diags->text_file) == 0)
         line = find_line(diags, loc.line, &line_bytes);
     if (line_bytes > LINE_BYTES)
-        line_bytes = LINE_BYTES;
+        line_bytes = whole_characters(line, LINE_BYTES);
     if (loc.column > line_bytes + 1)
         line = NULL;
 

@@ -45,10 +45,10 @@ enum {
 #define TO(lo, hi) lo, hi
 
 #define PLACE_KEYS                                                                                 \
-    NUM("center", CENTER, 3, ALL, REQ, ANY, "scene units", NULL, "the eye"),                       \
-        NUM("direction", DIRECTION, 3, ALL, REQ, ANY, "", NULL,                                    \
+    NUM("center", CENTER, 3, ALL, REQ | FLT, ANY, "scene units", NULL, "the eye"),                 \
+        NUM("direction", DIRECTION, 3, ALL, REQ | FLT, ANY, "", NULL,                              \
             "viewing direction, any length above 0"),                                              \
-        NUM("up", UP, 3, ALL, REQ, ANY, "", NULL,                                                  \
+        NUM("up", UP, 3, ALL, REQ | FLT, ANY, "", NULL,                                            \
             "what is up in the picture; not along direction"),                                     \
         TYPED(INTEGER, "width", WIDTH, 1, OURS, 0, TO(1, 16384), "pixels", NULL,                   \
               "size of the picture; without it the command line decides, else 640"),               \
@@ -56,7 +56,7 @@ enum {
         NUM("exposure", EXPOSURE, 1, OURS, 0, TO(-64, 64), "EV", "0",                              \
             "the shown picture is multiplied by 2^exposure")
 #define LENS_KEYS                                                                                  \
-    NUM("aperture", APERTURE, 1, OURS, 0, TO(0, UP), "scene units", "0",                           \
+    NUM("aperture", APERTURE, 1, OURS, FLT, TO(0, UP), "scene units", "0",                         \
         "radius of the lens; 0 is a pinhole"),                                                     \
         NUM("focus", FOCUS, 1, OURS, ABOVE | FL_KEY_TAKES_INF, TO(0, UP), "scene units", "inf",    \
             "distance of the plane in focus, along direction"),                                    \
@@ -74,7 +74,7 @@ static const fl_key perspective_keys[] = {
 
 static const fl_key orthographic_keys[] = {
     PLACE_KEYS,
-    NUM("size", SIZE, 1, ALL, REQ | ABOVE, TO(0, UP), "scene units", NULL,
+    NUM("size", SIZE, 1, ALL, REQ | ABOVE | FLT, TO(0, UP), "scene units", NULL,
         "height of what is seen"),
 };
 
@@ -82,7 +82,7 @@ static const fl_key view_keys[] = {
     PLACE_KEYS,
     NUM("angle", ANGLE, 1, ALL, 0, ANGLE_RANGE, "degrees", NULL,
         "full vertical field of view; this or size must be given"),
-    NUM("size", SIZE, 1, ALL, ABOVE, TO(0, UP), "scene units", NULL,
+    NUM("size", SIZE, 1, ALL, ABOVE | FLT, TO(0, UP), "scene units", NULL,
         "height of what is seen, for an orthographic view"),
     LENS_KEYS,
 };

@@ -2,7 +2,7 @@
  *
  * Layer 2: the grammar of scene texts, as one table: which blocks there are, where they may stand,
  * which keys they hold, with value type, range, unit, default and help, in which dialects. The
- * parser, `--help-scene` and docs/scene-format.md all come from this table; what is not in it does
+ * parser, `help scene` and docs/scene-format.md all come from this table; what is not in it does
  * not exist.
  */
 #ifndef FL_GRAMMAR_H
@@ -106,7 +106,7 @@ uint32_t fl_key_choice(const fl_key *key, const fl_token *word);
 /** Receives text piece by piece. */
 typedef void fl_write_fn(void *context, const char *text, size_t bytes);
 
-/** The whole table for a terminal (`--help-scene`), or as the page docs/scene-format.md. */
+/** The whole table for a terminal (`help scene`), or as the page docs/scene-format.md. */
 void fl_grammar_write_help(fl_write_fn *write, void *context);
 void fl_grammar_write_markdown(fl_write_fn *write, void *context);
 

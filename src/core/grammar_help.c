@@ -184,7 +184,7 @@ void fl_grammar_write_help(fl_write_fn *write, void *context)
 
 static const char introduction[] =
     "# Scene text\n\n"
-    "This page is written by `firstlight --help-scene=markdown` from the table that the parser "
+    "This page is written by `firstlight help scene-markdown` from the table that the parser "
     "reads\n"
     "(`src/core/grammar.c`); do not edit it.\n\n"
     "## Words\n\n"

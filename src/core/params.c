@@ -119,6 +119,12 @@ static bool check_limits(const fl_params *p, fl_diags *diags)
     if (p->solver > FL_REVOLVE_MAX_STARTS)
         is_fine = fl_error(diags, nowhere, "Newton's method takes 1 to %d starts a segment, got %u",
                            FL_REVOLVE_MAX_STARTS, p->solver);
+    /* Tables and names are indexed by these. */
+    if (p->sampler > FL_SAMPLER_STRATIFIED)
+        is_fine = fl_error(diags, nowhere, "there is no sampler number %u", (unsigned)p->sampler);
+    if (p->precision > FL_PRECISION_DOUBLE)
+        is_fine =
+            fl_error(diags, nowhere, "there is no precision number %u", (unsigned)p->precision);
     is_fine = check_strata(p, diags) && is_fine;
     if (!is_float3(p->background))
         is_fine = fl_error(diags, nowhere, "the background colour must be finite");

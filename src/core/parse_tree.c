@@ -148,9 +148,37 @@ static const char *dialect_that_knows(const fl_block *block, const fl_token *tok
     return NULL;
 }
 
-static void report_unknown(fl_tree_parser *p, const fl_token *name, const fl_block *parent,
-                           const char *what)
+/* The block of that or nearly that name which stands elsewhere, or NULL. */
+static const fl_block *block_elsewhere(const fl_tree_parser *p, const fl_token *name)
 {
+    const char *names[2 * FL_BLOCK_COUNT]; /* some blocks have two names */
+    size_t count = 0;
+    for (uint32_t i = 1; i < fl_grammar_block_count && count < FL_COUNT_OF(names); i++)
+        if (fl_grammar_blocks[i].dialects & p->dialects)
+            names[count++] = fl_grammar_blocks[i].name;
+    const char *nearest = fl_nearest_name(name->text, name->bytes, names, count);
+    for (uint32_t i = 1; nearest && i < fl_grammar_block_count; i++)
+        if (fl_grammar_blocks[i].name == nearest)
+            return &fl_grammar_blocks[i];
+    return NULL;
+}
+
+/* The block that it usually stands in. */
+static const char *home_of(const fl_block *block)
+{
+    bool is_curve = block->parents >> FL_BLOCK_REVOLUTION & 1u;
+    for (uint32_t i = 0; i < fl_grammar_block_count; i++) {
+        fl_block_id id = fl_grammar_blocks[i].id;
+        if ((block->parents >> id & 1u) && (!is_curve || id == FL_BLOCK_REVOLUTION))
+            return fl_grammar_blocks[i].name;
+    }
+    return fl_grammar_blocks[0].name;
+}
+
+static void report_unknown(fl_tree_parser *p, const fl_token *name, const fl_block *parent,
+                           bool is_block)
+{
+    const char *what = is_block ? "block" : "key";
     fl_loc loc = place(p, name);
     int bytes = (int)name->bytes;
     if (p->tree->is_lenient) {
@@ -160,6 +188,7 @@ static void report_unknown(fl_tree_parser *p, const fl_token *name, const fl_blo
     }
     const char *other = dialect_that_knows(parent, name);
     const char *nearest = fl_grammar_nearest(parent, name, p->dialects);
+    const fl_block *elsewhere = is_block ? block_elsewhere(p, name) : NULL;
     if (other)
         fl_error(p->diags, loc,
                  "unknown %s '%.*s' in '%s'; '%s' has it, but this text is read as '%s'", what,
@@ -167,6 +196,9 @@ static void report_unknown(fl_tree_parser *p, const fl_token *name, const fl_blo
     else if (nearest)
         fl_error(p->diags, loc, "unknown %s '%.*s' in '%s'; did you mean '%s'?", what, bytes,
                  name->text, parent->name, nearest);
+    else if (elsewhere)
+        fl_error(p->diags, loc, "unknown %s '%.*s' in '%s'; '%s' stands in '%s'", what, bytes,
+                 name->text, parent->name, elsewhere->name, home_of(elsewhere));
     else
         fl_error(p->diags, loc, "unknown %s '%.*s' in '%s'", what, bytes, name->text, parent->name);
 }
@@ -178,7 +210,7 @@ static bool skip_unknown(fl_tree_parser *p, const fl_block *parent)
     fl_token name = p->token;
     fl_tree_advance(p);
     bool is_block = p->token.kind == FL_TOKEN_OPEN_BRACE;
-    report_unknown(p, &name, parent, is_block ? "block" : "key");
+    report_unknown(p, &name, parent, is_block);
     if (is_block) {
         if (parent->id == FL_BLOCK_MATERIALS)
             parse_unknown_material(p, &name);

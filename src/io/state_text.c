@@ -335,7 +335,7 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
     if (!fl_camera_read_text(texts[1], strlen(texts[1]), &out->params.camera) ||
         !settings_read(texts[2], &s) || !fl_number_parse(texts[3], end, &samples) ||
         !(samples >= 0.0 && samples < 1e9) || s.dialect >= FL_DIALECT_COUNT ||
-        s.precision > FL_PRECISION_DOUBLE)
+        s.precision > FL_PRECISION_DOUBLE || s.sampler > FL_SAMPLER_STRATIFIED)
         return fl_error(diags, loc, "the firstlight keys of this picture are damaged");
     fl_params *p = &out->params;
     p->width = (uint32_t)s.size[0];

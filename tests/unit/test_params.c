@@ -47,6 +47,18 @@ static void an_empty_scene_has_usable_defaults(void **state)
     assert_false(p.transparent_shadows);
 }
 
+/* Tables are indexed by these; a saved picture may say anything. */
+static void unknown_kinds_are_refused(void **state)
+{
+    (void)state;
+    fl_params p = defaults();
+    p.sampler = (fl_sampler)4294967295u;
+    assert_non_null(strstr(message_of(&p), "sampler number"));
+    p = defaults();
+    p.precision = (fl_precision)7;
+    assert_non_null(strstr(message_of(&p), "precision number"));
+}
+
 static void the_scene_overrides(void **state)
 {
     (void)state;
@@ -199,6 +211,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(an_empty_scene_has_usable_defaults),
+        cmocka_unit_test(unknown_kinds_are_refused),
         cmocka_unit_test(the_scene_overrides),
         cmocka_unit_test(dialects_have_their_rules),
         cmocka_unit_test(bounds_are_enforced),
