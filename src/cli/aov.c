@@ -18,18 +18,19 @@ static uint32_t find(const char *word, size_t bytes, const char *const *names, u
     return i;
 }
 
-static bool refuse(const char *word, size_t bytes, fl_diags *diags)
+static bool refuse(const char *word, size_t bytes, char message[CLI_MESSAGE_BYTES])
 {
     const char *names[FL_AOV_COUNT + CLI_MAP_COUNT];
     memcpy(names, fl_aov_names, sizeof fl_aov_names[0] * FL_AOV_COUNT);
     memcpy(names + FL_AOV_COUNT, map_names, sizeof map_names);
     const char *nearest = fl_nearest_name(word, bytes, names, FL_COUNT_OF(names));
-    return fl_error(diags, (fl_loc){0}, "--aov does not know '%.*s'%s%s%s", (int)bytes, word,
-                    nearest ? "; did you mean '" : "; expected depth, normal, albedo, samples, error, cost, object, shape, branch",
-                    nearest ? nearest : "", nearest ? "'?" : "");
+    snprintf(message, CLI_MESSAGE_BYTES, "--aov does not know '%.*s'%s%s%s", (int)bytes, word,
+             nearest ? "; did you mean '" : "; expected depth, normal, albedo, samples, error, cost, object, shape, branch",
+             nearest ? nearest : "", nearest ? "'?" : "");
+    return false;
 }
 
-bool cli_aov_parse(const char *names, cli_aovs *out, fl_diags *diags)
+bool cli_aov_parse(const char *names, cli_aovs *out, char message[CLI_MESSAGE_BYTES])
 {
     *out = (cli_aovs){0};
     while (names && *names) {
@@ -41,20 +42,38 @@ bool cli_aov_parse(const char *names, cli_aovs *out, fl_diags *diags)
         else if (map < CLI_MAP_COUNT)
             out->maps |= 1u << map;
         else
-            return refuse(names, bytes, diags);
+            return refuse(names, bytes, message);
         names += bytes + (names[bytes] == ',');
     }
     return true;
 }
 
-static bool save(const char *path, const char *name, uint32_t width, uint32_t height, float *rgb, fl_diags *diags)
+const char *cli_aov_name(const cli_aovs *aovs, uint32_t i)
+{
+    for (uint32_t kind = 0; kind < FL_AOV_COUNT; kind++)
+        if ((aovs->kinds >> kind & 1u) && i-- == 0)
+            return fl_aov_names[kind];
+    for (uint32_t map = 0; map < CLI_MAP_COUNT; map++)
+        if ((aovs->maps >> map & 1u) && i-- == 0)
+            return map_names[map];
+    return NULL;
+}
+
+char *cli_aov_path(const char *path, const char *name)
 {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     size_t stem = dot ? (size_t)(dot - path) : strlen(path), room = stem + 32;
     char *beside = malloc(room);
+    if (beside)
+        snprintf(beside, room, "%.*s.%s.exr", (int)stem, path, name);
+    return beside;
+}
+
+static bool save(const char *path, const char *name, uint32_t width, uint32_t height, float *rgb, fl_diags *diags)
+{
+    char *beside = cli_aov_path(path, name);
     if (!beside)
         return fl_out_of_memory(diags, path);
-    snprintf(beside, room, "%.*s.%s.exr", (int)stem, path, name);
     fl_image image = {.width = width, .height = height, .format = FL_PIXEL_FLOAT, .pixels = rgb};
     bool ok = fl_image_save(beside, &image, NULL, 0, diags);
     free(beside);

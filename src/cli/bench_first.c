@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "cli/bench_run.h"
+#include "cli/json_text.h"
 
 /* The mesh on a square, before a disc light: 640x640. */
 static const char scene_text[] =
@@ -128,9 +129,9 @@ static void report(const bench_setup *setup, const bench_mesh *mesh, int moment,
     bench_figure f = bench_figure_of(full->at[moment], n),
                  q = bench_figure_of(quick->at[moment], n), gain = bench_figure_of(ratio, n);
     if (setup->rows) {
-        json_t *line = json_pack("{s:s, s:I, s:s, s:s, s:f}", "mesh", mesh->name, "triangles",
-                                 (json_int_t)mesh->face_count, "kind", "first-picture", "moment",
-                                 moment_names[moment], "quick_ms", q.median * 1e3);
+        json_t *line = json_pack("{s:o, s:I, s:s, s:s, s:f}", "mesh", cli_json_text(mesh->name),
+                                 "triangles", (json_int_t)mesh->face_count, "kind", "first-picture",
+                                 "moment", moment_names[moment], "quick_ms", q.median * 1e3);
         if (is_pair)
             json_object_update_new(line, json_pack("{s:f, s:f, s:f, s:f}", "full_ms",
                                                    f.median * 1e3, "ratio", gain.median,
@@ -165,10 +166,10 @@ static void report_stages(const bench_setup *setup, const bench_mesh *mesh, way 
             printf(" %s %.1f", fl_cost_names[k], p->cost_seconds[k] * 1e3);
     }
     if (setup->rows)
-        json_array_append_new(setup->rows,
-                              json_pack("{s:s, s:I, s:s, s:f, s:O}", "mesh", mesh->name,
-                                        "triangles", (json_int_t)mesh->face_count, "kind",
-                                        "first-sample", "ms", wall * 1e3, "stage_ms", costs));
+        json_array_append_new(
+            setup->rows, json_pack("{s:o, s:I, s:s, s:f, s:O}", "mesh", cli_json_text(mesh->name),
+                                   "triangles", (json_int_t)mesh->face_count, "kind",
+                                   "first-sample", "ms", wall * 1e3, "stage_ms", costs));
     else
         putchar('\n');
     json_decref(costs);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/bench_run.h"
+#include "cli/json_text.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -67,9 +68,10 @@ static void add_row(const bench_setup *setup, const row *r)
         fflush(stdout);
         return;
     }
-    json_t *line = json_pack("{s:s, s:I, s:s, s:f, s:f, s:f}", "mesh", r->mesh->name, "triangles",
-                             (json_int_t)r->mesh->face_count, "kind", r->kind, "mrays", r->mrays,
-                             "node_visits", r->node_visits, "primitive_tests", r->primitive_tests);
+    json_t *line =
+        json_pack("{s:o, s:I, s:s, s:f, s:f, s:f}", "mesh", cli_json_text(r->mesh->name),
+                  "triangles", (json_int_t)r->mesh->face_count, "kind", r->kind, "mrays", r->mrays,
+                  "node_visits", r->node_visits, "primitive_tests", r->primitive_tests);
     json_t *peer = r->peer
                        ? json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:I}", "peer", r->peer,
                                    "peer_mode", r->peer_mode, "peer_mrays", r->peer_mrays, "ratio",
@@ -279,11 +281,11 @@ static void report_all_threads(const bench_setup *setup, const bench_mesh *mesh,
     double one = bench_figure_of(b->wall, b->rounds).median,
            all = bench_figure_of(b->seconds[ALL], b->rounds).median;
     if (setup->rows) {
-        json_t *line =
-            json_pack("{s:s, s:I, s:s, s:I, s:f, s:f, s:f, s:f, s:f}", "mesh", mesh->name,
-                      "triangles", (json_int_t)mesh->face_count, "kind", "build-wall", "threads",
-                      (json_int_t)b->threads, "ms_1_thread", one * 1e3, "ms", all * 1e3, "speedup",
-                      times.median, "speedup_min", times.min, "speedup_max", times.max);
+        json_t *line = json_pack(
+            "{s:o, s:I, s:s, s:I, s:f, s:f, s:f, s:f, s:f}", "mesh", cli_json_text(mesh->name),
+            "triangles", (json_int_t)mesh->face_count, "kind", "build-wall", "threads",
+            (json_int_t)b->threads, "ms_1_thread", one * 1e3, "ms", all * 1e3, "speedup",
+            times.median, "speedup_min", times.min, "speedup_max", times.max);
         if (o->peer)
             json_object_update_new(line,
                                    json_pack("{s:s, s:f, s:f, s:f, s:f}", "peer", o->peer->name,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/bench_run.h"
+#include "cli/json_text.h"
 
 /* A loop that touches registers only, on every thread: what this machine's threads could add at
  * best right now. */
@@ -104,12 +105,12 @@ static void report(const bench_setup *setup, const cli_scene *scene, const char 
         fflush(stdout);
         return;
     }
-    json_t *line =
-        json_pack("{s:s, s:s, s:f, s:f, s:f, s:f, s:f, s:I, s:f}", "scene", scene->path, "kind",
-                  kind, "first_picture_ms", picture.median * 1e3, "first_sample_ms",
-                  sample.median * 1e3, "samples16_ms", all.median * 1e3, "cpu_ms", cpu.median * 1e3,
-                  "mrays", rays / cpu.median * 1e-6, "rays", (json_int_t)rays, "node_visits",
-                  (double)t->last.counts.isect.node_visits / rays);
+    json_t *line = json_pack("{s:o, s:s, s:f, s:f, s:f, s:f, s:f, s:I, s:f}", "scene",
+                             cli_json_text(scene->path), "kind", kind, "first_picture_ms",
+                             picture.median * 1e3, "first_sample_ms", sample.median * 1e3,
+                             "samples16_ms", all.median * 1e3, "cpu_ms", cpu.median * 1e3, "mrays",
+                             rays / cpu.median * 1e-6, "rays", (json_int_t)rays, "node_visits",
+                             (double)t->last.counts.isect.node_visits / rays);
     if (gain) {
         json_object_set_new(line, "speedup", json_real(gain->speedup));
         json_object_set_new(line, "speedup_possible", json_real(gain->possible));
@@ -154,12 +155,13 @@ static void report_stages(const bench_setup *setup, const cli_scene *scene, time
         stage_work w = work_of(&t->last.counts, (fl_cost)k);
         double rays = fl_max(w.rays, 1.0), share = seconds[k] / sum;
         if (setup->rows)
-            json_array_append_new(
-                setup->rows,
-                json_pack("{s:s, s:s, s:s, s:f, s:f, s:I, s:f, s:f}", "scene", scene->path, "kind",
-                          "stage", "stage", fl_cost_names[k], "share", share, "ns_per_ray",
-                          seconds[k] / rays * 1e9, "rays", (json_int_t)w.rays, "node_visits",
-                          w.node_visits / rays, "primitive_tests", w.primitive_tests / rays));
+            json_array_append_new(setup->rows,
+                                  json_pack("{s:o, s:s, s:s, s:f, s:f, s:I, s:f, s:f}", "scene",
+                                            cli_json_text(scene->path), "kind", "stage", "stage",
+                                            fl_cost_names[k], "share", share, "ns_per_ray",
+                                            seconds[k] / rays * 1e9, "rays", (json_int_t)w.rays,
+                                            "node_visits", w.node_visits / rays, "primitive_tests",
+                                            w.primitive_tests / rays));
         else
             printf("%-22s %-10s %5.1f %%  %9.0f rays %7.1f ns %7.2f nodes %7.2f tests a ray\n",
                    scene->path, fl_cost_names[k], 100.0 * share, w.rays, seconds[k] / rays * 1e9,

@@ -8,6 +8,7 @@
 #include <stdio.h>
 
 #include "cli/bench_run.h"
+#include "cli/json_text.h"
 
 enum { WAY_EVERY, WAY_SCALAR, WAY_WIDE, WAY_COUNT = 7, BASELINES = 3 };
 
@@ -127,13 +128,13 @@ static void report(const bench_setup *setup, const cli_scene *scene, const struc
     }
     json_array_append_new(
         setup->rows,
-        json_pack("{s:s, s:s, s:s, s:I, s:f, s:f, s:f, s:f, s:[f,f,f], s:[f,f,f], s:[f,f,f]}",
-                  "scene", scene->path, "kind", "source-comparison", "way", way->name, "rays",
-                  (json_int_t)t->rays, "job_ms", job.median * 1e3, "job_ns_per_ray", job_ns,
-                  "tracing_ms", tracing.median * 1e3, "primary_ns_per_ray", primary_ns,
-                  "job_ratios", x->job[0], x->job[1], x->job[2], "tracing_ratios", x->tracing[0],
-                  x->tracing[1], x->tracing[2], "primary_ratios", x->primary[0], x->primary[1],
-                  x->primary[2]));
+        json_pack("{s:o, s:s, s:s, s:I, s:f, s:f, s:f, s:f, s:[f,f,f], s:[f,f,f], s:[f,f,f]}",
+                  "scene", cli_json_text(scene->path), "kind", "source-comparison", "way",
+                  way->name, "rays", (json_int_t)t->rays, "job_ms", job.median * 1e3,
+                  "job_ns_per_ray", job_ns, "tracing_ms", tracing.median * 1e3,
+                  "primary_ns_per_ray", primary_ns, "job_ratios", x->job[0], x->job[1], x->job[2],
+                  "tracing_ratios", x->tracing[0], x->tracing[1], x->tracing[2], "primary_ratios",
+                  x->primary[0], x->primary[1], x->primary[2]));
 }
 
 bool bench_source_run(const bench_setup *setup, const cli_scene *scene, const bench_mesh *mesh)

@@ -1,12 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "cli/bench_run.h"
 #include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/places.h"
 
-enum { ROUNDS = 5, SIDE = 512, GROWTH_SIDE = 256, SOURCE_SIDE = 96, MILLION = 1000000 };
+enum { ROUNDS = 5, SIDE = 512, GROWTH_SIDE = 256, SOURCE_SIDE = 96 };
+
+/* Triangles of sphere:N. */
+enum { SPHERE_LEAST = 12, SPHERE_MOST = 100000000 };
 
 static bool is_mesh_file(const char *path)
 {
@@ -20,17 +25,29 @@ static bool is_mesh_file(const char *path)
     return false;
 }
 
+static const char sphere_prefix[] = "sphere:";
+
+static bool is_sphere(const char *path)
+{
+    return strncmp(path, sphere_prefix, sizeof sphere_prefix - 1) == 0;
+}
+
+/* N of sphere:N; 0: not a number that is taken. */
+static uint32_t sphere_triangles(const char *path)
+{
+    const char *digits = path + sizeof sphere_prefix - 1;
+    size_t count = strspn(digits, "0123456789");
+    unsigned long n = count >= 1 && count <= 9 && !digits[count] ? strtoul(digits, NULL, 10) : 0;
+    return n >= SPHERE_LEAST && n <= SPHERE_MOST ? (uint32_t)n : 0;
+}
+
 /* A mesh file, sphere:N for a bumpy sphere of about N triangles, or a scene. */
 static bool run_path(const cli_options *options, const bench_setup *setup, const char *path)
 {
-    uint32_t faces;
-    char rest;
-    if (sscanf(path, "sphere:%u%c", &faces, &rest) == 1 || is_mesh_file(path)) {
+    if (is_sphere(path) || is_mesh_file(path)) {
         bench_mesh mesh = {0};
-        bool is_sphere = strncmp(path, "sphere:", 7) == 0;
-        bool ok = is_sphere ? bench_mesh_sphere(fl_min_u32(fl_max_u32(faces, 12), 100 * MILLION),
-                                                &mesh, setup->diags)
-                            : bench_mesh_load(path, &mesh, setup->diags);
+        bool ok = is_sphere(path) ? bench_mesh_sphere(sphere_triangles(path), &mesh, setup->diags)
+                                  : bench_mesh_load(path, &mesh, setup->diags);
         ok = ok && (cli_has(options, CLI_OPT_FIRST_PICTURE) ? bench_first_run(setup, &mesh)
                                                             : bench_mesh_run(setup, &mesh));
         bench_mesh_deinit(&mesh);
@@ -49,9 +66,10 @@ static bool run_default(const cli_options *options, const bench_setup *setup)
     static const char *const paths[] = {"assets/bunny_1k.obj", "assets/bunny.obj", "sphere:1000000",
                                         "scenes/vase.txt", "scenes/bunny.txt"};
     bool ok = true;
+    char found[PATH_MAX];
     for (size_t i = 0; ok && i < FL_COUNT_OF(paths) && !cli_was_interrupted(); i++)
-        if (strchr(paths[i], ':') || access(paths[i], R_OK) == 0)
-            ok = run_path(options, setup, paths[i]);
+        if (cli_data_find(paths[i], found) || strchr(paths[i], ':'))
+            ok = run_path(options, setup, found);
     return ok;
 }
 
@@ -60,10 +78,13 @@ static bool run_source(const cli_options *options, const bench_setup *setup)
 {
     cli_scene scene = {.diags = setup->diags};
     bench_mesh mesh = {0};
-    bool ok = bench_mesh_load("assets/bunny_1k.obj", &mesh, setup->diags) &&
-              cli_scene_open(options, options->path_count ? options->paths[0] : "scenes/bunny.txt",
-                             &scene) &&
-              bench_source_run(setup, &scene, &mesh);
+    char bunny[PATH_MAX], default_scene[PATH_MAX];
+    cli_data_find("assets/bunny_1k.obj", bunny);
+    cli_data_find("scenes/bunny.txt", default_scene);
+    bool ok =
+        bench_mesh_load(bunny, &mesh, setup->diags) &&
+        cli_scene_open(options, options->path_count ? options->paths[0] : default_scene, &scene) &&
+        bench_source_run(setup, &scene, &mesh);
     bench_mesh_deinit(&mesh);
     cli_scene_close(&scene);
     return ok;
@@ -78,8 +99,27 @@ static uint32_t side_of(const cli_options *options)
     return cli_has(options, CLI_OPT_GROWTH) ? GROWTH_SIDE : SIDE;
 }
 
+/* What the words may be; CLI_DONE, or CLI_WRONG_USAGE after saying what is wrong. */
+static int check_words(const cli_options *options)
+{
+    if (cli_has(options, CLI_OPT_GROWTH) && options->path_count)
+        return cli_usage_error(CLI_BENCH, "--growth makes its own scenes: '%s' means nothing to it",
+                               options->paths[0]);
+    if (cli_has(options, CLI_OPT_SOURCE) && options->path_count > 1)
+        return cli_usage_error(CLI_BENCH, "--source-comparison takes one scene, got %u",
+                               options->path_count);
+    for (uint32_t i = 0; i < options->path_count; i++)
+        if (is_sphere(options->paths[i]) && !sphere_triangles(options->paths[i]))
+            return cli_usage_error(
+                CLI_BENCH, "'%s': expected sphere:N with a whole number of triangles from %d to %d",
+                options->paths[i], SPHERE_LEAST, SPHERE_MOST);
+    return CLI_DONE;
+}
+
 int cli_command_bench(const cli_options *options)
 {
+    if (check_words(options) != CLI_DONE)
+        return CLI_WRONG_USAGE;
     cli_catch_signals();
     fl_diags diags = {0};
     bool is_json = cli_has(options, CLI_OPT_JSON);
@@ -110,15 +150,10 @@ int cli_command_bench(const cli_options *options)
     for (uint32_t i = 0; ok && !is_special && i < options->path_count && !cli_was_interrupted();
          i++)
         ok = run_path(options, &setup, options->paths[i]);
-    if (is_json) {
-        json_t *line = json_pack("{s:O}", "rows", setup.rows);
-        json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
-        putchar('\n');
-        json_decref(line);
-    }
+    bool is_printed = !is_json || cli_json_print(json_pack("{s:O}", "rows", setup.rows), 6);
     json_decref(setup.rows);
     cli_print_diags(&diags);
-    int code = cli_exit_code(&diags);
+    int code = is_printed ? cli_exit_code(&diags) : CLI_ENVIRONMENT;
     fl_diags_deinit(&diags);
     return code == CLI_DONE && cli_was_interrupted() ? CLI_INTERRUPTED : code;
 }

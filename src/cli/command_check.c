@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "cli/commands.h"
-#include "cli/picture.h"
+#include "cli/outputs.h"
 #include "cli/report.h"
 #include "io/files.h"
 #include "io/image_file.h"
@@ -18,7 +19,7 @@ enum { GOLDEN_SIDE = 160, GOLDEN_SAMPLES = 16, PATH_BYTES = 4096 };
 typedef struct checker {
     const cli_options *options;
     cli_report *report; /* NULL: none asked for */
-    uint32_t passed_count, failed_count;
+    uint32_t passed_count, failed_count, error_count; /* each scene is in one of them, but for an interrupted one */
     int code; /* worst exit code of a scene that could not be rendered */
 } checker;
 
@@ -34,6 +35,9 @@ static bool write_golden(const char *path, const cli_scene *scene, const cli_pic
 {
     char name[PATH_BYTES], line[FL_SHA256_HEX + 2];
     beside(path, ".png", name);
+    if (cli_outputs_over_input(&(cli_outputs){.paths = {name}, .count = 1}, scene))
+        return fl_error(diags, (fl_loc){.file = path}, "the golden picture '%s' would replace one that the scene reads",
+                        name);
     if (!cli_picture_save(picture, scene, name, diags))
         return false;
     beside(path, ".sha256", name);
@@ -83,11 +87,7 @@ static fl_image *compare_picture(const char *path, const cli_picture *picture, c
 
 static void compare(checker *check, const char *path, cli_scene *scene, const cli_picture *picture)
 {
-    cli_check_result result = {.passed = true, .why = "same bytes"};
-    const char *slash = strrchr(path, '/');
-    snprintf(result.name, sizeof result.name, "%s", slash ? slash + 1 : path);
-    if (strrchr(result.name, '.'))
-        *strrchr(result.name, '.') = 0;
+    cli_check_result result = {.path = path, .passed = true, .why = "same bytes"};
     read_golden_hash(path, result.sha256_golden);
     snprintf(result.sha256_new, sizeof result.sha256_new, "%s", picture->film_sha256);
     if (picture->progress.counts.invalid_samples) {
@@ -103,6 +103,7 @@ static void compare(checker *check, const char *path, cli_scene *scene, const cl
     uint8_t *fresh = cli_picture_bytes(picture, &scene->params, scene->diags);
     if (fresh && (!result.passed || check->report)) {
         fl_image *golden = compare_picture(path, picture, fresh, &result);
+        result.has_golden = golden != NULL;
         if (check->report)
             cli_report_add(check->report, &result, picture->width, picture->height, golden ? golden->pixels : NULL,
                            fresh, scene->diags);
@@ -111,37 +112,48 @@ static void compare(checker *check, const char *path, cli_scene *scene, const cl
     free(fresh);
     check->passed_count += result.passed;
     check->failed_count += !result.passed;
-    if (!result.passed)
+    if (!result.passed && result.has_golden)
         printf("FAIL %s: %s (largest difference %u/255, %.3f %% of pixels)\n", path, result.why,
                result.largest_difference, 100.0 * result.differing_share);
+    else if (!result.passed)
+        printf("FAIL %s: %s\n", path, result.why);
     else if (!cli_has(check->options, CLI_OPT_QUIET))
         printf("ok   %s\n", path);
+}
+
+/* Render at the golden size and compare, or write the golden picture. */
+static void check_picture(checker *check, const char *path, cli_scene *scene)
+{
+    const fl_render_block *render = &scene->scene->render;
+    fl_render_limits limits = {.samples = GOLDEN_SAMPLES};
+    cli_picture_plan plan = {.threads = check->options->threads};
+    cli_picture picture = {0};
+    if (render->has_samples)
+        limits.samples = fl_min_u32(limits.samples, render->samples);
+    scene->params.width = scene->params.height = GOLDEN_SIDE;
+    scene->params.crop_x = scene->params.crop_y = scene->params.crop_w = scene->params.crop_h = 0;
+    if (cli_picture_render(scene, &limits, &plan, &picture) && !picture.was_interrupted) {
+        if (!cli_has(check->options, CLI_OPT_UPDATE)) {
+            compare(check, path, scene, &picture);
+        } else if (write_golden(path, scene, &picture, scene->diags)) {
+            check->passed_count++;
+            if (!cli_has(check->options, CLI_OPT_QUIET))
+                printf("wrote golden of %s\n", path);
+        }
+    }
+    cli_picture_close(&picture);
 }
 
 static void check_scene(checker *check, const char *path)
 {
     fl_diags diags = {0};
     cli_scene scene = {.diags = &diags};
-    cli_picture picture = {0};
-    if (cli_scene_open(check->options, path, &scene)) {
-        const fl_render_block *render = &scene.scene->render;
-        fl_render_limits limits = {.samples = GOLDEN_SAMPLES};
-        if (render->has_samples)
-            limits.samples = fl_min_u32(limits.samples, render->samples);
-        scene.params.width = scene.params.height = GOLDEN_SIDE;
-        if (cli_picture_render(&scene, &limits, &(cli_picture_plan){.threads = check->options->threads}, &picture) && !picture.was_interrupted) {
-            if (!cli_has(check->options, CLI_OPT_UPDATE)) {
-                compare(check, path, &scene, &picture);
-            } else if (write_golden(path, &scene, &picture, &diags)) {
-                check->passed_count++;
-                printf("wrote golden of %s\n", path);
-            }
-        }
-    }
+    if (cli_scene_open(check->options, path, &scene))
+        check_picture(check, path, &scene);
     cli_print_diags(&diags);
     int code = cli_exit_code(&diags);
+    check->error_count += code != CLI_DONE;
     check->code = code > check->code ? code : check->code;
-    cli_picture_close(&picture);
     cli_scene_close(&scene);
     fl_diags_deinit(&diags);
 }
@@ -152,13 +164,15 @@ static int is_scene_name(const struct dirent *entry)
     return dot && strcmp(dot, ".txt") == 0;
 }
 
-/* Every .txt of a folder, by name. False: not a folder. */
-static bool check_folder(checker *check, const char *path)
+/* Every .txt of a folder, by name. False after adding an error: there is none. */
+static bool check_folder(checker *check, const char *path, fl_diags *diags)
 {
     struct dirent **entries;
     int count = scandir(path, &entries, is_scene_name, alphasort);
     if (count < 0)
-        return false;
+        return fl_environment_error(diags, "cannot read folder '%s': %s", path, strerror(errno));
+    if (count == 0)
+        fl_error(diags, (fl_loc){0}, "there are no scenes (*.txt) in folder '%s'", path);
     for (int i = 0; i < count; i++) {
         char name[PATH_BYTES];
         snprintf(name, sizeof name, "%s/%s", path, entries[i]->d_name);
@@ -167,32 +181,46 @@ static bool check_folder(checker *check, const char *path)
         free(entries[i]);
     }
     free(entries);
-    return true;
+    return count > 0;
+}
+
+static void print_totals(const checker *check)
+{
+    if (cli_has(check->options, CLI_OPT_JSON)) {
+        printf("{\"passed\":%u,\"failed\":%u,\"errors\":%u}\n", check->passed_count, check->failed_count,
+               check->error_count);
+    } else if (!cli_has(check->options, CLI_OPT_QUIET)) {
+        printf("%u passed, %u failed", check->passed_count, check->failed_count);
+        if (check->error_count)
+            printf(", %u could not be checked", check->error_count);
+        putchar('\n');
+    }
 }
 
 int cli_command_check(const cli_options *options)
 {
     if (!options->path_count)
         return cli_usage_error(CLI_CHECK, "expected scenes or folders of scenes");
+    for (uint32_t i = 0; cli_has(options, CLI_OPT_UPDATE) && i < options->path_count; i++)
+        if (fl_saved_state_is_for(options->paths[i]))
+            return cli_usage_error(CLI_CHECK, "--update would replace the picture '%s': name its scene",
+                                   options->paths[i]);
     fl_diags diags = {0};
     checker check = {.options = options};
-    if (options->report && !(check.report = cli_report_open(options->report, &diags)))
-        check.code = CLI_ENVIRONMENT;
+    bool can_begin = !options->report || (check.report = cli_report_open(options->report, &diags)) != NULL;
     cli_catch_signals();
-    for (uint32_t i = 0; i < options->path_count && !cli_was_interrupted() && !diags.error_count; i++) {
+    for (uint32_t i = 0; can_begin && i < options->path_count && !cli_was_interrupted(); i++) {
         struct stat info;
-        bool is_folder = stat(options->paths[i], &info) == 0 && S_ISDIR(info.st_mode);
-        if (!is_folder || !check_folder(&check, options->paths[i]))
+        if (stat(options->paths[i], &info) == 0 && S_ISDIR(info.st_mode))
+            check_folder(&check, options->paths[i], &diags);
+        else
             check_scene(&check, options->paths[i]);
     }
     cli_report_close(check.report, &diags);
     cli_print_diags(&diags);
-    if (diags.error_count && check.code == CLI_DONE)
-        check.code = CLI_ENVIRONMENT;
-    if (cli_has(options, CLI_OPT_JSON))
-        printf("{\"passed\":%u,\"failed\":%u}\n", check.passed_count, check.failed_count);
-    else
-        printf("%u passed, %u failed\n", check.passed_count, check.failed_count);
+    int code = cli_exit_code(&diags);
+    check.code = code > check.code ? code : check.code;
+    print_totals(&check);
     fl_diags_deinit(&diags);
     if (cli_was_interrupted())
         return CLI_INTERRUPTED;

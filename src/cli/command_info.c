@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "cli/commands.h"
+#include "cli/json_text.h"
 #include "cli/noise.h"
 
 static const char *const severity_names[] = {"note", "warning", "error"};
@@ -13,9 +14,9 @@ static json_t *diagnostics_json(const fl_diags *diags)
     json_t *list = json_array();
     for (uint32_t i = 0; i < diags->count; i++) {
         const fl_diag *d = &diags->items[i];
-        json_array_append_new(list, json_pack("{s:s?, s:i, s:i, s:s, s:s}", "file", d->loc.file, "line",
+        json_array_append_new(list, json_pack("{s:o, s:i, s:i, s:s, s:o}", "file", cli_json_text(d->loc.file), "line",
                                               (int)d->loc.line, "column", (int)d->loc.column, "severity",
-                                              severity_names[d->severity], "message", d->message));
+                                              severity_names[d->severity], "message", cli_json_text(d->message)));
     }
     return list;
 }
@@ -48,18 +49,19 @@ static json_t *tree_json(const cli_options *options, const cli_scene *scene)
 {
     float rgb[3];
     char *text = tree_text(options, scene, rgb);
-    json_t *tree = text ? json_pack("{s:[I, I], s:I, s:[f, f, f], s:s}", "pixel", (json_int_t)options->pixel[0],
+    json_t *tree = text ? json_pack("{s:[I, I], s:I, s:[f, f, f], s:o}", "pixel", (json_int_t)options->pixel[0],
                                     (json_int_t)options->pixel[1], "sample", (json_int_t)options->pixel[2], "rgb",
-                                    (double)rgb[0], (double)rgb[1], (double)rgb[2], "tree", text)
+                                    (double)rgb[0], (double)rgb[1], (double)rgb[2], "tree", cli_json_text(text))
                         : NULL;
     free(text);
     return tree;
 }
 
-static void print_json(const cli_options *options, const cli_scene *scene, bool is_open,
+/* False: for want of memory. */
+static bool print_json(const cli_options *options, const cli_scene *scene, bool is_open,
                        const fl_noise_split *noise)
 {
-    json_t *line = json_pack("{s:s, s:o}", "scene", scene->path, "diagnostics", diagnostics_json(scene->diags));
+    json_t *line = json_pack("{s:o, s:o}", "scene", cli_json_text(scene->path), "diagnostics", diagnostics_json(scene->diags));
     const fl_compiled *c = scene->compiled;
     json_t *needs = json_array();
     for (uint32_t i = 0; c && i < FL_NEED_COUNT; i++)
@@ -68,8 +70,8 @@ static void print_json(const cli_options *options, const cli_scene *scene, bool 
     json_object_set_new(line, "needs", needs);
     if (c) {
         json_t *more = json_pack(
-            "{s:s, s:s, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:s, s:f, s:{s:I, s:I, s:I}}", "dialect",
-            fl_dialect_names[scene->scene->dialect], "dialect_reason", scene->scene->dialect_reason, "spheres",
+            "{s:s, s:o, s:i, s:i, s:i, s:I, s:I, s:i, s:i, s:i, s:s, s:f, s:{s:I, s:I, s:I}}", "dialect",
+            fl_dialect_names[scene->scene->dialect], "dialect_reason", cli_json_text(scene->scene->dialect_reason), "spheres",
             (int)c->geometry.spheres.count, "planes", (int)c->geometry.planes.count, "squares",
             (int)c->geometry.patches.count, "triangles", (json_int_t)c->triangle_count, "revolution_pieces",
             (json_int_t)c->revolution_piece_count, "instances", (int)c->geometry.instance_count, "lights",
@@ -83,9 +85,7 @@ static void print_json(const cli_options *options, const cli_scene *scene, bool 
         json_object_set_new(line, "sample", tree_json(options, scene));
     if (noise)
         json_object_set_new(line, "noise", cli_noise_json(noise));
-    json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
-    putchar('\n');
-    json_decref(line);
+    return cli_json_print(line, 9);
 }
 
 static void print_text(const cli_scene *scene)
@@ -133,9 +133,10 @@ int cli_command_info(const cli_options *options)
         ok = cli_noise_measure(scene.compiled, &scene.params, scene.path, &split, &diags);
         noise = ok ? &split : NULL;
     }
+    bool is_printed = true;
     if (cli_has(options, CLI_OPT_JSON)) {
         scene.path = options->paths[0];
-        print_json(options, &scene, ok, noise);
+        is_printed = print_json(options, &scene, ok, noise);
     } else if (ok && cli_has(options, CLI_OPT_PIXEL)) {
         float rgb[3];
         char *text = tree_text(options, &scene, rgb);
@@ -144,11 +145,13 @@ int cli_command_info(const cli_options *options)
         free(text);
     } else if (ok) {
         print_text(&scene);
-        if (noise)
-            cli_noise_print(noise, "  ");
     }
+    if (noise && !cli_has(options, CLI_OPT_JSON))
+        cli_noise_print(noise, "  ");
     cli_print_diags(&diags);
-    int code = cli_exit_code(&diags);
+    int code = is_printed ? cli_exit_code(&diags) : CLI_ENVIRONMENT;
+    if (code == CLI_DONE && cli_was_interrupted())
+        code = CLI_INTERRUPTED;
     cli_scene_close(&scene);
     fl_diags_deinit(&diags);
     return code;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include <jansson.h>
 #include <stdio.h>
 
 #include "cli/commands.h"
-#include "cli/aov.h"
+#include "cli/json_text.h"
 #include "cli/noise.h"
+#include "cli/outputs.h"
 #include "io/image_file.h"
 
 static json_t *forecast_json(const fl_progress *progress, double target)
@@ -15,8 +15,8 @@ static json_t *forecast_json(const fl_progress *progress, double target)
     return json_pack("{s:f, s:f, s:f, s:f}", "rmse", target, "seconds", f.seconds, "low", f.low, "high", f.high);
 }
 
-/* One line for programs: the keys are binding (docs/cli.md). */
-static void print_json(const cli_scene *scene, const cli_picture *picture, double target, const fl_noise_split *noise)
+/* One line for programs, which rely on its keys. False: for want of memory. */
+static bool print_json(const cli_scene *scene, const cli_picture *picture, double target, const fl_noise_split *noise)
 {
     const fl_progress *p = &picture->progress;
     const fl_counts *c = &p->counts;
@@ -31,8 +31,8 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, doubl
     for (uint32_t i = 0; i < FL_COST_COUNT; i++)
         json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
-        "{s:s, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:s, s:b, s:s, s:f}", "scene",
-        scene->path, "width", (int)picture->width, "height", (int)picture->height, "samples", (int)cli_picture_samples(picture),
+        "{s:o, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:s, s:b, s:s, s:f}", "scene",
+        cli_json_text(scene->path), "width", (int)picture->width, "height", (int)picture->height, "samples", (int)cli_picture_samples(picture),
         "light_samples", (int)scene->params.light_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
         "first_sample_seconds", p->first_sample_seconds, "stage_seconds", costs, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
@@ -50,11 +50,7 @@ static void print_json(const cli_scene *scene, const cli_picture *picture, doubl
         json_object_update_new(line, json_pack("{s:b, s:f}", "adaptive", 1, "mean_samples", p->mean_samples));
     if (line && noise)
         json_object_set_new(line, "noise", cli_noise_json(noise));
-    if (line) {
-        json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(9));
-        putchar('\n');
-    }
-    json_decref(line);
+    return cli_json_print(line, 9);
 }
 
 static void print_summary(const cli_picture *picture, double target)
@@ -78,14 +74,80 @@ static void print_summary(const cli_picture *picture, double target)
     putchar('\n');
 }
 
-/* Refuse names that no format has before an hour of rendering, not after. */
-static bool outputs_are_writable(const cli_options *options, fl_diags *diags)
+/* A render on its way. Zero-initialise. */
+typedef struct job {
+    const cli_options *options;
+    cli_aovs aovs;
+    cli_outputs outputs;
+    cli_scene scene;
+    cli_picture picture;
+    fl_diags diags;
+} job;
+
+static bool save_pictures(job *j)
+{
+    bool ok = true;
+    for (uint32_t i = 0; i < j->options->output_count; i++)
+        ok = cli_picture_save(&j->picture, &j->scene, j->options->outputs[i], &j->diags) && ok;
+    if (j->options->aov)
+        ok = cli_aov_save(&j->scene, &j->picture, &j->aovs, j->options->outputs[0], &j->diags) && ok;
+    return ok;
+}
+
+/* The scene is open. False after adding an error, or having said what went wrong. */
+static bool run(job *j)
+{
+    const cli_options *options = j->options;
+    bool is_quiet = cli_has(options, CLI_OPT_QUIET), is_json = cli_has(options, CLI_OPT_JSON);
+    fl_render_limits limits = {.samples = cli_sample_limit(options, &j->scene),
+                               .noise_rmse = options->noise,
+                               .seconds = options->time_s};
+    cli_picture_plan plan = {.threads = options->threads,
+                             .progress_name = is_quiet ? NULL : j->scene.path,
+                             .maps = j->aovs.maps,
+                             .checkpoint = options->checkpoint};
+    if (!cli_picture_render(&j->scene, &limits, &plan, &j->picture))
+        return j->picture.was_interrupted;
+    save_pictures(j);
+    double target = options->noise > 0.0 ? options->noise : CLI_FORECAST_RMSE;
+    fl_noise_split split, *noise = NULL;
+    if (cli_has(options, CLI_OPT_NOISE_SPLIT) && !j->picture.was_interrupted &&
+        cli_noise_measure(j->scene.compiled, &j->scene.params, plan.progress_name, &split, &j->diags))
+        noise = &split;
+    if (is_json)
+        return print_json(&j->scene, &j->picture, target, noise);
+    if (!is_quiet)
+        print_summary(&j->picture, target);
+    if (noise && !is_quiet)
+        cli_noise_print(noise, "");
+    return true;
+}
+
+/* Refuse names that no format has. */
+static bool has_formats(const cli_options *options, fl_diags *diags)
 {
     fl_pixel_format format;
     for (uint32_t i = 0; i < options->output_count; i++)
         if (!fl_image_format_for(options->outputs[i], diags, &format))
             return false;
     return true;
+}
+
+/* Everything that needs no scene, then those outputs that the scene itself reads. CLI_DONE: go on, if no error was added. */
+static int prepare(job *j)
+{
+    const cli_options *options = j->options;
+    if (!has_formats(options, &j->diags))
+        return CLI_WRONG_USAGE;
+    if (!cli_outputs_list(options, &j->aovs, &j->outputs, &j->diags))
+        return CLI_DONE;
+    const char *twice = cli_outputs_twice(&j->outputs);
+    if (twice)
+        return cli_usage_error(CLI_RENDER, "'%s' would be written twice", twice);
+    if (!cli_outputs_check(&j->outputs, &j->diags) || !cli_scene_open(options, options->paths[0], &j->scene))
+        return CLI_DONE;
+    const char *input = cli_outputs_over_input(&j->outputs, &j->scene);
+    return input ? cli_usage_error(CLI_RENDER, "'%s' would be written over, and the scene reads it", input) : CLI_DONE;
 }
 
 int cli_command_render(const cli_options *options)
@@ -95,45 +157,23 @@ int cli_command_render(const cli_options *options)
     if (!options->output_count && !cli_has(options, CLI_OPT_JSON))
         return cli_usage_error(CLI_RENDER, "nowhere to write: give -o IMAGE or --json");
     cli_catch_signals();
-    fl_diags diags = {0};
-    cli_scene scene = {.diags = &diags, .quick_above = options->quick_above};
-    cli_picture picture = {0};
-    cli_aovs aovs;
-    if (outputs_are_writable(options, &diags) && cli_aov_parse(options->aov, &aovs, &diags) &&
-        cli_scene_open(options, options->paths[0], &scene)) {
-        fl_render_limits limits = {.samples = cli_sample_limit(options, &scene),
-                                   .noise_rmse = options->noise,
-                                   .seconds = options->time_s};
-        bool is_quiet = cli_has(options, CLI_OPT_QUIET);
-        cli_picture_plan plan = {.threads = options->threads,
-                                 .progress_name = is_quiet ? NULL : scene.path,
-                                 .maps = aovs.maps,
-                                 .checkpoint = options->checkpoint};
-        if (cli_picture_render(&scene, &limits, &plan, &picture)) {
-            bool ok = true;
-            for (uint32_t i = 0; i < options->output_count; i++)
-                ok = cli_picture_save(&picture, &scene, options->outputs[i], &diags) && ok;
-            if (options->aov && options->output_count)
-                ok = cli_aov_save(&scene, &picture, &aovs, options->outputs[0], &diags) && ok;
-            double target = options->noise > 0.0 ? options->noise : CLI_FORECAST_RMSE;
-            fl_noise_split split, *noise = NULL;
-            if (cli_has(options, CLI_OPT_NOISE_SPLIT) && !picture.was_interrupted &&
-                cli_noise_measure(scene.compiled, &scene.params, is_quiet ? NULL : scene.path, &split, &diags))
-                noise = &split;
-            if (cli_has(options, CLI_OPT_JSON))
-                print_json(&scene, &picture, target, noise);
-            else if (!is_quiet)
-                print_summary(&picture, target);
-            if (noise && !is_quiet && !cli_has(options, CLI_OPT_JSON))
-                cli_noise_print(noise, "");
-        }
-    }
-    cli_print_diags(&diags);
-    int code = cli_exit_code(&diags);
-    if (code == CLI_DONE && picture.was_interrupted)
+    job j = {.options = options};
+    j.scene = (cli_scene){.diags = &j.diags, .quick_above = options->quick_above};
+    char message[CLI_MESSAGE_BYTES];
+    if (!cli_aov_parse(options->aov, &j.aovs, message))
+        return cli_usage_error(CLI_RENDER, "%s", message);
+    int code = prepare(&j);
+    bool ok = true;
+    if (code == CLI_DONE && !j.diags.error_count)
+        ok = run(&j);
+    cli_print_diags(&j.diags);
+    if (code == CLI_DONE)
+        code = ok || j.diags.error_count ? cli_exit_code(&j.diags) : CLI_ENVIRONMENT;
+    if (code == CLI_DONE && cli_was_interrupted())
         code = CLI_INTERRUPTED;
-    cli_picture_close(&picture);
-    cli_scene_close(&scene);
-    fl_diags_deinit(&diags);
+    cli_picture_close(&j.picture);
+    cli_scene_close(&j.scene);
+    cli_outputs_deinit(&j.outputs);
+    fl_diags_deinit(&j.diags);
     return code;
 }

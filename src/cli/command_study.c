@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/commands.h"
+#include "cli/places.h"
 #include "cli/study_extremes.h"
 #include "cli/study_write.h"
 
@@ -17,6 +18,8 @@ static void shrink(fl_params *params)
         return;
     params->width = fl_max_u32(1, params->width * SIDE_DEFAULT / longer);
     params->height = fl_max_u32(1, params->height * SIDE_DEFAULT / longer);
+    params->crop_x = params->crop_y = params->crop_w = params->crop_h =
+        0; /* of the large picture */
 }
 
 static uint32_t power_of_two_below(uint32_t x)
@@ -27,36 +30,17 @@ static uint32_t power_of_two_below(uint32_t x)
     return power;
 }
 
-/* The words that repeat this study, for the files. */
-static void write_command(const cli_options *o, const cli_scene *scene, uint32_t samples,
-                          uint32_t repeats, FILE *file)
+/* The words that repeat this study, for the files: what was not asked for, too, where it has a
+ * default of its own. */
+static void write_command(const cli_options *o, uint32_t samples, uint32_t repeats, FILE *file)
 {
-    const fl_params *p = &scene->params;
-    fprintf(file, "firstlight study %s --size %ux%u --samples %u --repeats %u", scene->path,
-            p->width, p->height, samples, repeats);
-    if (cli_has(o, CLI_OPT_DEPTH))
-        fprintf(file, " --depth %u", o->depth);
-    if (cli_has(o, CLI_OPT_LIGHT_SAMPLES))
-        fprintf(file, " --light-samples %u", o->light_samples);
-    if (cli_has(o, CLI_OPT_WEIGHT_THRESHOLD))
-        fprintf(file, " --weight-threshold %g", o->weight_threshold);
-    if (cli_has(o, CLI_OPT_APERTURE))
-        fprintf(file, " --aperture %.9g", o->aperture);
-    if (cli_has(o, CLI_OPT_FOCUS))
-        fprintf(file, " --focus %.9g", o->focus);
-    if (cli_has(o, CLI_OPT_SEED))
-        fprintf(file, " --seed %u", o->seed);
-    if (cli_has(o, CLI_OPT_CAMERA)) {
-        fputs(" --camera '", file);
-        for (uint32_t i = 0; i < FL_COUNT_OF(o->camera); i++)
-            fprintf(file, "%s%.9g", i ? " " : "", o->camera[i]);
-        fputc('\'', file);
-    }
-    if (cli_has(o, CLI_OPT_BUDGET))
-        fprintf(file, " --budget %g", o->budget_s);
-    if (cli_has(o, CLI_OPT_SWEEP))
-        fprintf(file, " --sweep %s", o->sweep);
-    fprintf(file, " --out %s", o->out_dir);
+    cli_options all = *o;
+    all.samples = samples;
+    all.repeats = repeats;
+    all.given |= (uint64_t)1 << CLI_OPT_SAMPLES | (uint64_t)1 << CLI_OPT_REPEATS;
+    fputs("firstlight study ", file);
+    cli_word_print(o->paths[0], file);
+    cli_options_print(&all, file);
 }
 
 static void print_summary(const study_report *report)
@@ -114,7 +98,7 @@ static bool run(const cli_options *o, cli_scene *scene, uint32_t knobs, study *s
     study_table *table = study_table_create(s);
     bool ok = file != NULL;
     if (file) {
-        write_command(o, scene, settings.samples_max, settings.repeats, file);
+        write_command(o, settings.samples_max, settings.repeats, file);
         ok = fclose(file) == 0;
     }
     ok = ok && table ? report(o, scene, s, table, command)
@@ -136,6 +120,10 @@ static int unknown_knob(const char *word)
 
 int cli_command_study(const cli_options *options)
 {
+    if (cli_has(options, CLI_OPT_EXTREMES) && options->path_count)
+        return cli_usage_error(CLI_STUDY,
+                               "--extremes makes its own scenes: '%s' means nothing to it",
+                               options->paths[0]);
     if (cli_has(options, CLI_OPT_EXTREMES))
         return study_extremes(options);
     if (options->path_count != 1)
@@ -151,7 +139,7 @@ int cli_command_study(const cli_options *options)
     cli_scene scene = {.diags = &diags};
     study s = {0};
     if (cli_scene_open(options, options->paths[0], &scene) &&
-        study_folder_open(options->out_dir, &diags)) {
+        cli_folder_open(options->out_dir, &diags)) {
         if (!cli_has(options, CLI_OPT_SIZE))
             shrink(&scene.params);
         run(options, &scene, knobs, &s);

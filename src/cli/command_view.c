@@ -4,20 +4,11 @@
  */
 #include <jansson.h>
 #include <stdio.h>
-#include <unistd.h>
 
 #include "cli/commands.h"
+#include "cli/json_text.h"
+#include "cli/places.h"
 #include "viewer/viewer.h"
-
-/* What opens when no scene is named: beside the program's data, or in a checkout. */
-static const char *default_scene(void)
-{
-    static const char *const places[] = {"scenes/vase.txt", FL_DATA_DIR "/scenes/vase.txt"};
-    for (size_t i = 0; i < FL_COUNT_OF(places); i++)
-        if (access(places[i], R_OK) == 0)
-            return places[i];
-    return places[0];
-}
 
 static bool load(void *context, const char *path, vw_scene *out, fl_diags *diags)
 {
@@ -66,8 +57,10 @@ int cli_command_view(const cli_options *options)
     if (options->path_count > 1)
         return cli_usage_error(CLI_VIEW, "expected one scene, got %u", options->path_count);
     vw_options viewer = viewer_options(options);
+    char default_scene[PATH_MAX];
+    cli_data_find("scenes/vase.txt", default_scene);
     viewer.has_own_keys = true;
-    viewer.scene_path = options->path_count ? options->paths[0] : default_scene();
+    viewer.scene_path = options->path_count ? options->paths[0] : default_scene;
     fl_diags diags = {0};
     cli_catch_signals();
     vw_run(&viewer, &diags);
@@ -84,26 +77,28 @@ static json_t *latency_json(const vw_latency *latency)
     return json_pack("{s:f, s:f, s:f}", "p50", latency->p50, "p95", latency->p95, "p99", latency->p99);
 }
 
-static void print_report(const cli_options *options, const vw_replay_report *report)
+/* False: the line of JSON could not be made. */
+static bool print_report(const cli_options *options, const vw_replay_report *report)
 {
     if (!cli_has(options, CLI_OPT_JSON)) {
+        if (cli_has(options, CLI_OPT_QUIET))
+            return true;
         printf("%zu inputs changed the picture; ms to the first picture p50 %.1f p95 %.1f p99 %.1f, to a full sample "
                "p50 %.1f p95 %.1f p99 %.1f, to cancel p99 %.2f\n",
                report->input_count, report->first.p50, report->first.p95, report->first.p99, report->full.p50,
                report->full.p95, report->full.p99, report->cancel.p99);
-        return;
+        return true;
     }
     json_t *snapshots = json_array();
     for (size_t i = 0; i < report->snapshot_count; i++)
-        json_array_append_new(snapshots, json_pack("{s:s, s:s, s:i}", "file", report->snapshots[i].file, "film_sha256",
+        json_array_append_new(snapshots, json_pack("{s:o, s:s, s:i}", "file", cli_json_text(report->snapshots[i].file), "film_sha256",
                                                    report->snapshots[i].film_sha256, "samples",
                                                    (int)report->snapshots[i].samples));
-    json_t *line = json_pack("{s:{s:o, s:o, s:o}, s:I, s:o}", "latency_ms", "first", latency_json(&report->first), "full",
+    json_t *line = json_pack("{s:{s:o, s:o, s:o}, s:I, s:o, s:b}", "latency_ms", "first", latency_json(&report->first), "full",
                              latency_json(&report->full), "cancel", latency_json(&report->cancel), "inputs",
-                             (json_int_t)report->input_count, "snapshots", snapshots);
-    json_dumpf(line, stdout, JSON_COMPACT | JSON_REAL_PRECISION(6));
-    putchar('\n');
-    json_decref(line);
+                             (json_int_t)report->input_count, "snapshots", snapshots, "interrupted",
+                             (int)cli_was_interrupted());
+    return cli_json_print(line, 6);
 }
 
 int cli_command_replay(const cli_options *options)
@@ -114,10 +109,14 @@ int cli_command_replay(const cli_options *options)
     vw_replay_report report = {0};
     fl_diags diags = {0};
     cli_catch_signals();
-    if (vw_replay_run(&viewer, options->paths[0], !cli_has(options, CLI_OPT_QUIET), &report, &diags))
-        print_report(options, &report);
+    bool is_done = vw_replay_run(&viewer, options->paths[0], !cli_has(options, CLI_OPT_QUIET), &report, &diags);
+    bool is_printed = true;
+    if (is_done || (cli_was_interrupted() && !diags.error_count)) /* then as far as it came */
+        is_printed = print_report(options, &report);
     cli_print_diags(&diags);
-    int code = cli_exit_code(&diags);
+    int code = is_printed ? cli_exit_code(&diags) : CLI_ENVIRONMENT;
+    if (code == CLI_DONE && cli_was_interrupted())
+        code = CLI_INTERRUPTED;
     vw_replay_report_deinit(&report);
     fl_diags_deinit(&diags);
     return code;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include <ctype.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -14,7 +14,8 @@ const cli_command cli_command_table[CLI_COMMAND_COUNT] = {
                     "number of threads; --json prints its sha256. An interrupted render saves what it has."},
     [CLI_CHECK] = {"check", "PATH...", "render scenes and compare with the golden picture beside each",
                    "PATH is a scene or a folder of scenes. NAME.txt is compared with NAME.png and NAME.sha256, rendered at "
-                   "160x160 with at most 16 samples. Exit 1 when any differs."},
+                   "160x160 with at most 16 samples. Exit 1 when any differs, 3 when there was nothing to check. --json counts passed, "
+                   "failed and errors: scenes that could not be rendered."},
     [CLI_STUDY] = {"study", "SCENE --out DIR", "measure what every knob costs and what it buys",
                    "Renders the scene with one knob at a time moved and compares with a converged reference: error, "
                    "time, rays; writes study.csv, study.json, plots (with gnuplot) and index.html. --noise RMSE asks for "
@@ -27,7 +28,8 @@ const cli_command cli_command_table[CLI_COMMAND_COUNT] = {
                    "number of camera rays (W x W, default 512)."},
     [CLI_INFO] = {"info", "SCENE", "what the scene contains and requires", "Reads and compiles, renders nothing."},
     [CLI_CONVERT] = {"convert", "IN OUT", "write a scene of any dialect in ours, formatted, comments kept",
-                     "OUT may be - for standard output."},
+                     "OUT may be - for standard output. In another folder, relative names of files are written anew so that they lead to the "
+                     "same files."},
     [CLI_REPLAY] = {"replay", "LOG", "drive the viewer offscreen from a recorded log",
                     "The clock is the log's: snapshots are the same bytes on every machine. Latencies are real time."},
     [CLI_HELP] = {"help", "[COMMAND]", "show help; 'help scene' explains the scene format, 'help keys' the controls",
@@ -91,6 +93,101 @@ void cli_print_help(cli_command_id command)
                cli_command_table[i].help);
     puts("\n'firstlight help COMMAND' lists its options. Exit codes: 0 done, 1 check failed, 2 wrong usage,\n"
          "3 wrong input, 4 environment (no display, out of memory, disk full), 130 interrupted.");
+}
+
+void cli_word_print(const char *word, FILE *file)
+{
+    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=,./:@%";
+    if (*word && !word[strspn(word, plain)]) {
+        fputs(word, file);
+        return;
+    }
+    fputc('\'', file);
+    for (; *word; word++)
+        if (*word == '\'')
+            fputs("'\\''", file);
+        else
+            fputc(*word, file);
+    fputc('\'', file);
+}
+
+static void print_numbers(const double *numbers, int count, FILE *file)
+{
+    char text[32];
+    if (count > 1)
+        fputc('\'', file);
+    for (int i = 0; i < count; i++) {
+        size_t bytes = isinf(numbers[i]) ? (size_t)snprintf(text, sizeof text, "inf") : fl_number_format(numbers[i], text);
+        fprintf(file, "%s%.*s", i ? " " : "", (int)bytes, text);
+    }
+    if (count > 1)
+        fputc('\'', file);
+}
+
+static void print_counts(const uint32_t *counts, int count, char separator, FILE *file)
+{
+    for (int i = 0; i < count; i++) {
+        if (i)
+            fputc(separator, file);
+        fprintf(file, "%u", counts[i]);
+    }
+}
+
+static void print_value(const cli_option *row, const cli_options *options, FILE *file)
+{
+    const void *field = (const char *)options + row->offset;
+    switch (row->kind) {
+    case CLI_KIND_COUNT_OR_AUTO:
+        if (*(const uint32_t *)field == CLI_AUTO)
+            fputs("auto", file);
+        else
+            print_counts(field, 1, ' ', file);
+        break;
+    case CLI_KIND_COUNT:
+        print_counts(field, 1, ' ', file);
+        break;
+    case CLI_KIND_SIZE:
+        print_counts(field, 2, 'x', file);
+        break;
+    case CLI_KIND_CROP:
+        print_counts(field, 4, ',', file);
+        break;
+    case CLI_KIND_PIXEL:
+        print_counts(field, 3, ',', file);
+        break;
+    case CLI_KIND_NUMBER:
+    case CLI_KIND_NUMBER_OR_INF:
+        print_numbers(field, 1, file);
+        break;
+    case CLI_KIND_CAMERA:
+        print_numbers(field, 10, file);
+        break;
+    case CLI_KIND_CHOICE:
+        fputs(row->choices[*(const uint32_t *)field], file);
+        break;
+    case CLI_KIND_CHOICE_TEXT:
+    case CLI_KIND_TEXT:
+        cli_word_print(*(const char *const *)field, file);
+        break;
+    case CLI_KIND_FLAG:
+    case CLI_KIND_OUTPUT:
+        break;
+    }
+}
+
+void cli_options_print(const cli_options *options, FILE *file)
+{
+    for (int i = 0; i < CLI_OPT_COUNT; i++) {
+        const cli_option *row = &cli_option_table[i];
+        if (!cli_has(options, (cli_option_id)i) || row->kind == CLI_KIND_OUTPUT)
+            continue;
+        fprintf(file, row->kind == CLI_KIND_FLAG ? " --%s" : " --%s ", row->name);
+        print_value(row, options, file);
+    }
+    for (uint32_t i = 0; i < options->output_count; i++) {
+        fputs(" --output ", file);
+        cli_word_print(options->outputs[i], file);
+    }
 }
 
 /* Text with the characters that man(7) takes as its own made plain. */

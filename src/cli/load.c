@@ -5,12 +5,16 @@
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 
 #include "cli/noise.h"
 #include "io/files.h"
 
 static volatile sig_atomic_t interrupted;
+
+/* The place of what the options ask for and the scene cannot give. */
+static const fl_loc on_command_line = {.file = "(command line)"};
 
 static void on_signal(int number)
 {
@@ -22,8 +26,12 @@ void cli_catch_signals(void)
 {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
     for (size_t i = 0; i < FL_COUNT_OF(numbers); i++) {
-        struct sigaction action = {.sa_handler = on_signal};
+        struct sigaction action = {.sa_handler = on_signal}, before;
         sigemptyset(&action.sa_mask);
+        /* Under nohup it is to go on. SIGINT is caught even so: scripts ignore it for what they start in the background,
+         * and who sends it there all the same means it. */
+        if (numbers[i] == SIGHUP && sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler == SIG_IGN)
+            continue;
         sigaction(numbers[i], &action, NULL);
     }
 }
@@ -51,10 +59,43 @@ void cli_print_diags(const fl_diags *diags)
 int cli_exit_code(const fl_diags *diags)
 {
     int code = diags->error_count ? CLI_WRONG_INPUT : CLI_DONE;
-    for (uint32_t i = 0; i < diags->count; i++)
-        if (diags->items[i].severity == FL_ERROR && diags->items[i].cause == FL_CAUSE_ENVIRONMENT)
-            code = CLI_ENVIRONMENT;
+    for (uint32_t i = 0; i < diags->count; i++) {
+        const fl_diag *d = &diags->items[i];
+        if (d->severity != FL_ERROR)
+            continue;
+        if (d->cause == FL_CAUSE_ENVIRONMENT)
+            return CLI_ENVIRONMENT;
+        if (d->loc.file && strcmp(d->loc.file, on_command_line.file) == 0)
+            code = CLI_WRONG_USAGE;
+    }
     return code;
+}
+
+static bool is_same_place(const fl_loc *a, const fl_loc *b)
+{
+    return a->file && b->file && a->line == b->line && a->column == b->column && strcmp(a->file, b->file) == 0;
+}
+
+void cli_note_slips(const char *text, size_t bytes, const char *path, const fl_parse_options *parse, fl_diags *diags)
+{
+    if (parse->is_lenient)
+        return;
+    fl_diags forgiven = {0};
+    fl_parse_options lenient = *parse;
+    lenient.is_lenient = true;
+    fl_scene_destroy(fl_scene_parse(text, bytes, path, &lenient, NULL, &forgiven));
+    uint32_t slips = 0;
+    for (uint32_t i = 0; i < diags->count; i++) {
+        bool is_slip = false;
+        for (uint32_t k = 0; k < forgiven.count && !is_slip; k++)
+            is_slip = diags->items[i].severity == FL_ERROR && forgiven.items[k].severity == FL_WARNING &&
+                      is_same_place(&diags->items[i].loc, &forgiven.items[k].loc);
+        slips += is_slip;
+    }
+    fl_diags_deinit(&forgiven);
+    if (slips)
+        fl_note(diags, (fl_loc){.file = path}, "%u of these errors %s of course files: --lenient warns instead", slips,
+                slips == 1 ? "is a known slip" : "are known slips");
 }
 
 bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *out)
@@ -74,6 +115,8 @@ bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *ou
                               .dialect = is_reopened ? out->state.dialect : (fl_dialect)options->dialect,
                               .is_lenient = cli_has(options, CLI_OPT_LENIENT)};
     out->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, out->diags);
+    if (!out->scene)
+        cli_note_slips(text, bytes, path, &parse, out->diags);
     free(text);
     return out->scene != NULL;
 }
@@ -88,6 +131,12 @@ static void apply_camera(const double value[10], fl_camera *camera)
     camera->fov_deg = value[9];
 }
 
+/* A crop belongs to the size that it was cut from. */
+static void drop_crop(fl_params *params)
+{
+    params->crop_x = params->crop_y = params->crop_w = params->crop_h = 0;
+}
+
 /* The options' values over the scene's. */
 static void apply_options(const cli_options *o, fl_params *params)
 {
@@ -99,6 +148,8 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->width = (uint32_t)fl_clamp(floor(params->width * o->scale + 0.5), 1.0, 1e9);
         params->height = (uint32_t)fl_clamp(floor(params->height * o->scale + 0.5), 1.0, 1e9);
     }
+    if (cli_has(o, CLI_OPT_SIZE) || cli_has(o, CLI_OPT_SCALE))
+        drop_crop(params);
     if (cli_has(o, CLI_OPT_CROP)) {
         params->crop_x = o->crop[0];
         params->crop_y = o->crop[1];
@@ -140,10 +191,41 @@ double cli_wall_seconds(void)
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
+/* Once more, to say where: the scene's own values were wrong, or the options made them so. */
+static bool explain_params(const fl_params *own, const cli_scene *scene, fl_diags *found)
+{
+    fl_diags of_scene = {0};
+    fl_loc loc = fl_params_check(own, &of_scene) ? on_command_line : (fl_loc){.file = scene->path};
+    for (uint32_t i = 0; i < found->count; i++)
+        fl_error(scene->diags, found->items[i].loc.file ? found->items[i].loc : loc, "%s", found->items[i].message);
+    fl_diags_deinit(&of_scene);
+    return false;
+}
+
+/* Parameters: the scene's, then the picture's, then the options'. */
+static bool set_params(const cli_options *options, cli_scene *out)
+{
+    fl_params own;
+    fl_params_from_scene(&own, out->scene, out->state.is_exact || cli_has(options, CLI_OPT_DIALECT_EXACT));
+    if (out->state.scene_path)
+        fl_saved_state_apply(&out->state, out->scene, &own);
+    own.strata = cli_sample_limit(&(cli_options){0}, out);
+    out->params = own;
+    apply_options(options, &out->params);
+    out->params.strata = cli_sample_limit(options, out);
+    if (out->params.solver == FL_REVOLVE_ROBUST && cli_has(options, CLI_OPT_REVOLVE_STARTS))
+        return fl_error(out->diags, on_command_line,
+                        "--revolve-starts means nothing without --revolve-solver newton");
+    fl_diags found = {0};
+    bool is_fine = fl_params_check(&out->params, &found) || explain_params(&own, out, &found);
+    fl_diags_deinit(&found);
+    return is_fine;
+}
+
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out)
 {
     double begin = cli_wall_seconds();
-    if (!cli_scene_parse(options, path, out))
+    if (!cli_scene_parse(options, path, out) || !set_params(options, out))
         return false;
     fl_pool *pool = fl_pool_create(options->threads, out->diags);
     if (!pool)
@@ -158,13 +240,6 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
     out->compiled = fl_compile(out->scene, &compile, pool, out->diags);
     fl_pool_destroy(pool);
     if (!out->compiled)
-        return false;
-    fl_params_from_scene(&out->params, out->scene, out->state.is_exact || cli_has(options, CLI_OPT_DIALECT_EXACT));
-    if (out->state.scene_path)
-        fl_saved_state_apply(&out->state, out->scene, &out->params);
-    apply_options(options, &out->params);
-    out->params.strata = cli_sample_limit(options, out);
-    if (!fl_params_check(&out->params, out->diags))
         return false;
     bool is_auto = cli_has(options, CLI_OPT_LIGHT_SAMPLES) && options->light_samples == CLI_AUTO;
     if (is_auto && !cli_noise_choose_light_samples(out->compiled, &out->params, out->diags))

@@ -23,6 +23,9 @@ typedef struct cli_scene {
 /** Read and parse; true: out->scene is set. */
 bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *out);
 
+/** After a text was refused: note how many of the errors --lenient would turn into warnings, if any. Opens no files. */
+void cli_note_slips(const char *text, size_t bytes, const char *path, const fl_parse_options *parse, fl_diags *diags);
+
 /** Read, parse, compile with all threads asked for, and set the parameters: scene, then the state of the picture that
  *  `path` may name instead of a scene, then options (decision 19). */
 bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out);
@@ -35,7 +38,8 @@ double cli_wall_seconds(void);
 /** Print all diagnostics on standard error, most recent last, with a count of those dropped. */
 void cli_print_diags(const fl_diags *diags);
 
-/** Exit code for what the diagnostics say: 0 without errors, 4 if any error is the environment's, else 3. */
+/** Exit code for what the diagnostics say: 0 without errors, 4 if any error is the environment's, 2 if the options asked for
+ *  what the scene cannot give, else 3. */
 int cli_exit_code(const fl_diags *diags);
 
 /** Samples to stop at: option, else the picture's, else Render block, else default (0 when only time or noise is to stop

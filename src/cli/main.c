@@ -6,6 +6,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "cli/commands.h"
 #include "cli/tables.h"
@@ -41,7 +42,7 @@ static cli_command_id command_of(int argc, char **argv, int *skip)
     cli_command_id command = cli_command_find(argv[1]);
     if (command != CLI_COMMAND_COUNT)
         *skip = 1;
-    else if (argv[1][0] == '-' || strpbrk(argv[1], "./"))
+    else if (argv[1][0] == '-' || strpbrk(argv[1], "./") || access(argv[1], F_OK) == 0)
         command = CLI_VIEW;
     return command;
 }
@@ -68,7 +69,7 @@ int main(int argc, char **argv)
         return cli_usage_error(command, "'%s' is neither a command nor the path of a scene", argv[1]);
     }
     cli_options options;
-    char message[256];
+    char message[CLI_MESSAGE_BYTES];
     if (!cli_options_parse(command, argc - skip, argv + skip, &options, message, sizeof message))
         return cli_usage_error(command, "%s", message);
     if (cli_has(&options, CLI_OPT_HELP)) {

@@ -240,51 +240,158 @@ static bool store(const cli_option *row, const char *text, cli_options *out)
     return false;
 }
 
-static void explain_value(const cli_option *row, const char *text, char *message, size_t bytes)
+/* What the values of an option are, for people. */
+static void describe_values(const cli_option *row, char *out, size_t bytes)
 {
-    int used = snprintf(message, bytes, "'%s' is not a value of --%s; expected ", text, row->name);
-    if (used < 0 || (size_t)used >= bytes)
-        return;
-    char *rest = message + used;
-    size_t room = bytes - (size_t)used;
-    if (row->choices) {
-        for (uint32_t i = 0; row->choices[i] && room; i++) {
-            used = snprintf(rest, room, "%s%s", i ? ", " : "", row->choices[i]);
-            if (used < 0 || (size_t)used >= room)
-                return;
-            rest += used;
-            room -= (size_t)used;
-        }
-    } else if (row->kind == CLI_KIND_COUNT || row->kind == CLI_KIND_COUNT_OR_AUTO) {
-        snprintf(rest, room, "a whole number from %.10g to %.10g%s", row->lowest, row->highest,
+    int used = 0;
+    switch (row->kind) {
+    case CLI_KIND_CHOICE:
+    case CLI_KIND_CHOICE_TEXT:
+        for (uint32_t i = 0; row->choices[i] && used >= 0 && (size_t)used < bytes; i++)
+            used += snprintf(out + used, bytes - (size_t)used, "%s%s", i ? ", " : "", row->choices[i]);
+        break;
+    case CLI_KIND_COUNT:
+    case CLI_KIND_COUNT_OR_AUTO:
+        snprintf(out, bytes, "a whole number from %.10g to %.10g%s", row->lowest, row->highest,
                  row->kind == CLI_KIND_COUNT ? "" : ", or auto");
-    } else if (row->kind == CLI_KIND_NUMBER) {
-        snprintf(rest, room, "a number from %g to %g", row->lowest, row->highest);
-    } else {
-        snprintf(rest, room, "%s", row->argument ? row->argument : "text");
+        break;
+    case CLI_KIND_NUMBER:
+        snprintf(out, bytes, "a number from %g to %g", row->lowest, row->highest);
+        break;
+    case CLI_KIND_NUMBER_OR_INF:
+        snprintf(out, bytes, "a number above 0, or inf");
+        break;
+    case CLI_KIND_SIZE:
+    case CLI_KIND_PIXEL:
+        snprintf(out, bytes, "%s with whole numbers from %.10g to %.10g", row->argument, row->lowest, row->highest);
+        break;
+    case CLI_KIND_CROP:
+        snprintf(out, bytes, "%s with whole numbers up to %.10g, W and H from 1", row->argument, row->highest);
+        break;
+    case CLI_KIND_CAMERA:
+        snprintf(out, bytes, "ten finite numbers: %s", row->argument);
+        break;
+    default:
+        snprintf(out, bytes, "%s", row->argument ? row->argument : "no value");
     }
 }
 
-/* An unknown word that begins with '-': say so and name the nearest. */
+static void explain_value(const cli_option *row, const char *text, char *message, size_t bytes)
+{
+    char values[256];
+    describe_values(row, values, sizeof values);
+    snprintf(message, bytes, "'%s' is not a value of --%s; expected %s", text, row->name, values);
+}
+
+/* Options of the command that begin with `bare`, as one list; returns how many. */
+static size_t list_candidates(cli_command_id command, const char *bare, char *out, size_t bytes)
+{
+    size_t count = 0, length = strcspn(bare, "="), used = 0;
+    for (int i = 0; i < CLI_OPT_COUNT; i++) {
+        const cli_option *row = &cli_option_table[i];
+        if (!(row->commands & BIT(command)) || strncmp(row->name, bare, length) != 0 || used >= bytes)
+            continue;
+        int printed = snprintf(out + used, bytes - used, "%s--%s", count++ ? ", " : "", row->name);
+        used += printed > 0 ? (size_t)printed : 0;
+    }
+    return count;
+}
+
+/* A letter, alone or among others behind one '-'. */
+static void explain_letter(cli_command_id command, int letter, char *message, size_t bytes)
+{
+    for (int i = 0; i < CLI_OPT_COUNT; i++)
+        if (cli_option_table[i].letter == (char)letter) {
+            snprintf(message, bytes, "'%s' takes no option -%c", cli_command_table[command].name, letter);
+            return;
+        }
+    snprintf(message, bytes, "unknown option '-%c'", letter);
+}
+
+/* An unknown word that begins with '--': say so and name the nearest. */
 static void explain_unknown(cli_command_id command, const char *word, char *message, size_t bytes)
 {
     const char *names[CLI_OPT_COUNT];
     size_t count = 0;
+    const char *bare = word + strspn(word, "-");
     for (int i = 0; i < CLI_OPT_COUNT; i++) {
         const cli_option *row = &cli_option_table[i];
-        if (word[0] == '-' && word[1] == '-' && strcmp(row->name, word + 2) == 0) {
-            snprintf(message, bytes, "'%s' takes no option --%s", cli_command_table[command].name, row->name);
+        bool is_named = strlen(row->name) == strcspn(bare, "=") && strncmp(row->name, bare, strlen(row->name)) == 0;
+        if (is_named) {
+            snprintf(message, bytes, row->commands & BIT(command) ? "'%s': --%s takes no value" : "'%s' takes no option --%s",
+                     row->commands & BIT(command) ? word : cli_command_table[command].name, row->name);
             return;
         }
         if (row->commands & BIT(command))
             names[count++] = row->name;
     }
-    const char *bare = word + strspn(word, "-");
+    char candidates[256];
     const char *nearest = fl_nearest_name(bare, strcspn(bare, "="), names, count);
-    if (nearest)
+    if (list_candidates(command, bare, candidates, sizeof candidates) > 1)
+        snprintf(message, bytes, "'%s' may be any of %s", word, candidates);
+    else if (nearest)
         snprintf(message, bytes, "unknown option '%s'; did you mean '--%s'?", word, nearest);
     else
         snprintf(message, bytes, "unknown option '%s'", word);
+}
+
+/* What getopt_long gave up at: `got` is its '?' or ':'. */
+static void explain_failure(cli_command_id command, int got, const char *word, char *message, size_t bytes)
+{
+    bool is_letter = optopt > 0 && optopt < 256;
+    if (got == ':' && is_letter)
+        snprintf(message, bytes, "option '-%c' needs a value", optopt);
+    else if (got == ':')
+        snprintf(message, bytes, "option '%s' needs a value", word);
+    else if (is_letter)
+        explain_letter(command, optopt, message, bytes);
+    else
+        explain_unknown(command, word, message, bytes);
+}
+
+/* ---- Options that mean nothing without another one, or beside it ---- */
+
+enum { ANY_VALUE = -1 };
+
+static const struct {
+    cli_option_id option;
+    bool needs; /* False: `other` is excluded. */
+    cli_option_id other;
+    int value; /* Of `other`, a choice: only this one counts. */
+} rules[] = {
+    {CLI_OPT_AOV, true, CLI_OPT_OUTPUT, ANY_VALUE},
+    {CLI_OPT_ALL, true, CLI_OPT_EXTREMES, ANY_VALUE},
+    {CLI_OPT_OCTREE_HEIGHT, true, CLI_OPT_ACCEL, FL_ACCEL_OCTREE},
+    {CLI_OPT_CHECKPOINT, false, CLI_OPT_ADAPTIVE, 1},
+    {CLI_OPT_UPDATE, false, CLI_OPT_REPORT, ANY_VALUE},
+    {CLI_OPT_EXTREMES, false, CLI_OPT_OUT, ANY_VALUE},
+    {CLI_OPT_EXTREMES, false, CLI_OPT_SWEEP, ANY_VALUE},
+    {CLI_OPT_GROWTH, false, CLI_OPT_SOURCE, ANY_VALUE},
+    {CLI_OPT_GROWTH, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE},
+    {CLI_OPT_SOURCE, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE},
+};
+
+static bool is_given(const cli_options *options, cli_option_id id, int value)
+{
+    if (!cli_has(options, id))
+        return false;
+    return value == ANY_VALUE ||
+           *(const uint32_t *)(const void *)((const char *)options + cli_option_table[id].offset) == (uint32_t)value;
+}
+
+static bool follow_rules(const cli_options *options, char *message, size_t bytes)
+{
+    for (size_t i = 0; i < FL_COUNT_OF(rules); i++) {
+        const cli_option *row = &cli_option_table[rules[i].option], *other = &cli_option_table[rules[i].other];
+        if (!cli_has(options, rules[i].option) ||
+            is_given(options, rules[i].other, rules[i].value) == rules[i].needs)
+            continue;
+        bool has_value = rules[i].value != ANY_VALUE;
+        snprintf(message, bytes, rules[i].needs ? "--%s means nothing without --%s%s%s" : "--%s does not go with --%s%s%s",
+                 row->name, other->name, has_value ? " " : "", has_value ? other->choices[rules[i].value] : "");
+        return false;
+    }
+    return true;
 }
 
 bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_options *out, char *message,
@@ -314,12 +421,8 @@ bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_option
         for (int i = 0; got < 256 && i < CLI_OPT_COUNT; i++)
             if (cli_option_table[i].letter == (char)got && (cli_option_table[i].commands & BIT(command)))
                 id = i;
-        if (got == ':') {
-            snprintf(message, message_bytes, "option '%s' needs a value", argv[optind - 1]);
-            return false;
-        }
-        if (got == '?' || id < 0) {
-            explain_unknown(command, argv[optind - 1], message, message_bytes);
+        if (got == ':' || got == '?' || id < 0) {
+            explain_failure(command, got, argv[optind - 1], message, message_bytes);
             return false;
         }
         if (id == CLI_OPT_OUTPUT && out->output_count == CLI_OUTPUTS_MAX) {
@@ -334,5 +437,5 @@ bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_option
     }
     out->paths = (const char **)argv + optind;
     out->path_count = (uint32_t)(argc - optind);
-    return true;
+    return cli_has(out, CLI_OPT_HELP) || follow_rules(out, message, message_bytes);
 }

@@ -5,6 +5,8 @@
 #ifndef CLI_OPTIONS_H
 #define CLI_OPTIONS_H
 
+#include <stdio.h>
+
 #include "core/firstlight.h"
 
 /** Exit codes of the program. */
@@ -17,7 +19,7 @@ enum {
     CLI_INTERRUPTED = 130
 };
 
-enum { CLI_OUTPUTS_MAX = 16 };
+enum { CLI_OUTPUTS_MAX = 16, CLI_MESSAGE_BYTES = 512 };
 
 /** A count that the program is to choose itself. */
 enum { CLI_AUTO = 0 };
@@ -117,6 +119,11 @@ static inline bool cli_has(const cli_options *options, cli_option_id id)
  *  word, with the nearest right one, into `message`. */
 bool cli_options_parse(cli_command_id command, int argc, char **argv, cli_options *out, char *message,
                        size_t message_bytes);
+
+/** Print all options that were given, each behind a blank, as words that a shell reads back. */
+void cli_options_print(const cli_options *options, FILE *file);
+/** Print a word, in quotes where a shell would not take it as it is. */
+void cli_word_print(const char *word, FILE *file);
 
 /** The command called `name`; CLI_COMMAND_COUNT: none. */
 cli_command_id cli_command_find(const char *name);

@@ -159,8 +159,13 @@ static bool take_picture(fl_render *render, cli_picture *out, fl_diags *diags)
     if (!fl_size_mul((size_t)out->width * 3, out->height, &floats) ||
         !(out->rgb = malloc(floats * sizeof *out->rgb)))
         return fl_out_of_memory(diags, "the picture");
-    if (!fl_render_mean(render, out->rgb, floats, &out->progress))
+    if (!fl_render_mean(render, out->rgb, floats, &out->progress)) {
+        if (out->was_interrupted) {
+            fl_note(diags, (fl_loc){0}, "interrupted before the first sample: there is nothing to save");
+            return false;
+        }
         return fl_environment_error(diags, "nothing was rendered");
+    }
     fl_digest_sha256(out->rgb, floats * sizeof *out->rgb, out->film_sha256);
     return true;
 }

@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/report.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
+#include "cli/places.h"
 #include "io/files.h"
 #include "io/image_file.h"
 
@@ -14,15 +13,14 @@ struct cli_report {
     char dir[4096];
     char *html;
     size_t bytes;
+    uint32_t count; /* of scenes so far: two of the same name are in different files */
     FILE *text; /* memory stream behind html */
 };
 
 cli_report *cli_report_open(const char *dir, fl_diags *diags)
 {
-    if (mkdir(dir, 0777) != 0 && errno != EEXIST) {
-        fl_environment_error(diags, "cannot make folder '%s': %s", dir, strerror(errno));
+    if (!cli_folder_open(dir, diags))
         return NULL;
-    }
     cli_report *report = calloc(1, sizeof *report);
     if (report)
         report->text = open_memstream(&report->html, &report->bytes);
@@ -40,13 +38,26 @@ cli_report *cli_report_open(const char *dir, fl_diags *diags)
     return report;
 }
 
-static bool add_picture(cli_report *report, const char *name, const char *kind, uint32_t width, uint32_t height,
-                        const uint8_t *rgb, fl_diags *diags)
+/* Text of a page: names may hold anything. */
+static void put_text(FILE *file, const char *text)
 {
-    char path[4096 + 512];
-    snprintf(path, sizeof path, "%s/%s.%s.png", report->dir, name, kind);
+    for (; *text; text++) {
+        if (strchr("&<>\"'", *text))
+            fprintf(file, "&#%d;", *text);
+        else
+            fputc(*text, file);
+    }
+}
+
+/* Named after the number of the scene: its own name may stand in several folders, and hold what a link may not. */
+static bool add_picture(cli_report *report, const char *kind, uint32_t width, uint32_t height, const uint8_t *rgb,
+                        fl_diags *diags)
+{
+    char path[4096 + 64];
+    snprintf(path, sizeof path, "%s/scene-%u.%s.png", report->dir, report->count, kind);
     fl_image image = {.width = width, .height = height, .format = FL_PIXEL_SRGB8, .pixels = (void *)(uintptr_t)rgb};
-    fprintf(report->text, "<figure><img src='%s.%s.png'><figcaption>%s</figcaption></figure>\n", name, kind, kind);
+    fprintf(report->text, "<figure><img src='scene-%u.%s.png'><figcaption>%s</figcaption></figure>\n", report->count, kind,
+            kind);
     return fl_image_save(path, &image, NULL, 0, diags);
 }
 
@@ -64,16 +75,23 @@ static uint8_t *difference(const uint8_t *a, const uint8_t *b, size_t count)
 bool cli_report_add(cli_report *report, const cli_check_result *result, uint32_t width, uint32_t height,
                     const uint8_t *golden, const uint8_t *fresh, fl_diags *diags)
 {
-    fprintf(report->text, "<h2 class=%s>%s: %s</h2>\n<p>golden <code>%s</code><br>new <code>%s</code><br>", result->passed ? "pass" : "fail",
-            result->name, result->why, result->sha256_golden, result->sha256_new);
-    fprintf(report->text, "largest difference %u/255, %.4f %% of pixels differ</p>\n", result->largest_difference,
-            100.0 * result->differing_share);
-    bool ok = add_picture(report, result->name, "new", width, height, fresh, diags);
+    report->count++;
+    fprintf(report->text, "<h2 class=%s>", result->passed ? "pass" : "fail");
+    put_text(report->text, result->path);
+    fprintf(report->text, ": %s</h2>\n<p>golden <code>%s</code><br>new <code>%s</code>", result->why,
+            result->sha256_golden[0] ? result->sha256_golden : "none", result->sha256_new);
+    if (golden)
+        fprintf(report->text, "<br>largest difference %u/255, %.4f %% of pixels differ", result->largest_difference,
+                100.0 * result->differing_share);
+    else
+        fputs("<br>no golden picture of this size to compare with", report->text);
+    fputs("</p>\n", report->text);
+    bool ok = add_picture(report, "new", width, height, fresh, diags);
     if (golden) {
         uint8_t *change = difference(golden, fresh, (size_t)width * height * 3);
-        ok = add_picture(report, result->name, "golden", width, height, golden, diags) && ok;
+        ok = add_picture(report, "golden", width, height, golden, diags) && ok;
         if (change)
-            ok = add_picture(report, result->name, "difference-x16", width, height, change, diags) && ok;
+            ok = add_picture(report, "difference-x16", width, height, change, diags) && ok;
         free(change);
     }
     return ok;

@@ -9,8 +9,8 @@
 
 /** How a scene did. */
 typedef struct cli_check_result {
-    char name[256];        /**< File name without extension. */
-    bool passed;
+    const char *path;      /**< Of the scene; borrowed. */
+    bool passed, has_golden; /**< Whether there is a golden picture of the same size. */
     const char *why;       /**< A phrase for people; static. */
     char sha256_golden[72], sha256_new[72];
     uint32_t largest_difference; /**< Of 8-bit values, against the golden picture. */

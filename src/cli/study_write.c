@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/study_write.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
+#include "cli/json_text.h"
 #include "cli/picture.h"
 #include "io/files.h"
 #include "io/image_file.h"
@@ -180,12 +179,12 @@ static json_t *json_machine(const study *s)
     char processor[128];
     double load = study_load_average();
     processor_name(processor, sizeof processor);
-    return json_pack("{s:s, s:i, s:i, s:s, s:s, s:s, s:s, s:o, s:o}", "processor", processor,
-                     "processors", (int)sysconf(_SC_NPROCESSORS_ONLN), "threads",
-                     (int)s->settings.threads, "isa", fl_isa_name(s->scene->compiled->isa),
-                     "compiler", __VERSION__, "flags", FL_BUILD_FLAGS, "commit", cli_commit,
-                     "load_begin", real_or_null(s->load >= 0.0, s->load), "load_end",
-                     real_or_null(load >= 0.0, load));
+    return json_pack(
+        "{s:o, s:i, s:i, s:s, s:s, s:s, s:s, s:o, s:o}", "processor", cli_json_text(processor),
+        "processors", (int)sysconf(_SC_NPROCESSORS_ONLN), "threads", (int)s->settings.threads,
+        "isa", fl_isa_name(s->scene->compiled->isa), "compiler", __VERSION__, "flags",
+        FL_BUILD_FLAGS, "commit", cli_commit, "load_begin", real_or_null(s->load >= 0.0, s->load),
+        "load_end", real_or_null(load >= 0.0, load));
 }
 
 json_t *study_json(const study_report *report)
@@ -211,11 +210,12 @@ json_t *study_json(const study_report *report)
         study_sentence(s, report->table, targets[i], sentence, sizeof sentence);
         json_array_append_new(sentences, json_string(sentence));
     }
-    return json_pack("{s:s, s:s, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:f, s:b, s:b, s:f, s:o, "
+    return json_pack("{s:o, s:o, s:i, s:i, s:i, s:i, s:i, s:o, s:o, s:o, s:f, s:b, s:b, s:f, s:o, "
                      "s:o, s:s, s:o}",
-                     "command", report->command, "scene", s->scene->path, "width", (int)s->width,
-                     "height", (int)s->height, "samples_max", (int)s->settings.samples_max,
-                     "rounds", (int)s->rounds, "repeats", (int)s->settings.repeats, "machine",
+                     "command", cli_json_text(report->command), "scene",
+                     cli_json_text(s->scene->path), "width", (int)s->width, "height",
+                     (int)s->height, "samples_max", (int)s->settings.samples_max, "rounds",
+                     (int)s->rounds, "repeats", (int)s->settings.repeats, "machine",
                      json_machine(s), "reference", json_reference(&s->own), "deep_reference",
                      s->has_deep ? json_reference(&s->deep) : json_null(), "truncation_rmse",
                      s->truncation_rmse, "interrupted", (int)s->was_interrupted, "out_of_budget",
@@ -260,17 +260,6 @@ static bool write_thumbnails(const study_report *report, fl_diags *diags)
             ok = save_thumbnail(report, name, s->scratch[0], diags);
     }
     return ok;
-}
-
-bool study_folder_open(const char *dir, fl_diags *diags)
-{
-    struct stat status;
-    if (mkdir(dir, 0777) != 0 && errno != EEXIST)
-        return fl_environment_error(diags, "cannot make folder '%s': %s", dir, strerror(errno));
-    if (stat(dir, &status) != 0 || !S_ISDIR(status.st_mode))
-        return fl_environment_error(diags, "'%s' is no folder", dir);
-    return access(dir, W_OK) == 0 ||
-           fl_environment_error(diags, "cannot write into folder '%s': %s", dir, strerror(errno));
 }
 
 bool study_write(study_report *report, fl_diags *diags)

@@ -29,10 +29,6 @@ typedef struct study_report {
     bool has_plots;      /**< Set by study_write_plots: gnuplot made the SVGs. */
 } study_report;
 
-/** Make the folder unless it is there. Before anything is measured: it would be lost. False after
- * adding an error. */
-bool study_folder_open(const char *dir, fl_diags *diags);
-
 /** All of it, into a folder that is there. False after adding errors; what could be written is
  * there. */
 bool study_write(study_report *report, fl_diags *diags);

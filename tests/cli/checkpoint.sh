@@ -74,7 +74,7 @@ refuse 'no checkpoint' 'no checkpoint of firstlight' notes "$scene" --size 64x64
 
 before=$(sha256sum steps)
 "$program" render "$scene" --size 64x64 --adaptive on --checkpoint steps --quiet --json >stdout 2>stderr
-check 'adaptive: exit code' 3 $?
+check 'adaptive: exit code' 2 $?
 check 'adaptive: file' "$before" "$(sha256sum steps)"
 
 # Exposure decides no sample.
