@@ -48,7 +48,7 @@ json_t *cli_json_text(const char *text)
     return replaced;
 }
 
-bool cli_json_print(json_t *line, int digits)
+bool cli_json_print(json_t *line, unsigned digits)
 {
     if (!line) {
         fputs("firstlight: error: out of memory for the line of JSON\n", stderr);

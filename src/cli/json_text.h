@@ -14,6 +14,6 @@ json_t *cli_json_text(const char *text);
 
 /** Print on one line of standard output and let go of `line`. False after saying so on standard
  * error: `line` is NULL, for want of memory. */
-bool cli_json_print(json_t *line, int digits);
+bool cli_json_print(json_t *line, unsigned digits);
 
 #endif

@@ -353,22 +353,25 @@ static void explain_failure(cli_command_id command, int got, const char *word, c
 
 enum { ANY_VALUE = -1 };
 
+_Static_assert(CLI_OPT_COUNT < 64, "cli_options.given has a bit for each, and one that is never set");
+
 static const struct {
     cli_option_id option;
     bool needs; /* False: `other` is excluded. */
     cli_option_id other;
     int value; /* Of `other`, a choice: only this one counts. */
+    cli_option_id unless; /* This one is given. */
 } rules[] = {
-    {CLI_OPT_AOV, true, CLI_OPT_OUTPUT, ANY_VALUE},
-    {CLI_OPT_ALL, true, CLI_OPT_EXTREMES, ANY_VALUE},
-    {CLI_OPT_OCTREE_HEIGHT, true, CLI_OPT_ACCEL, FL_ACCEL_OCTREE},
-    {CLI_OPT_CHECKPOINT, false, CLI_OPT_ADAPTIVE, 1},
-    {CLI_OPT_UPDATE, false, CLI_OPT_REPORT, ANY_VALUE},
-    {CLI_OPT_EXTREMES, false, CLI_OPT_OUT, ANY_VALUE},
-    {CLI_OPT_EXTREMES, false, CLI_OPT_SWEEP, ANY_VALUE},
-    {CLI_OPT_GROWTH, false, CLI_OPT_SOURCE, ANY_VALUE},
-    {CLI_OPT_GROWTH, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE},
-    {CLI_OPT_SOURCE, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE},
+    {CLI_OPT_AOV, true, CLI_OPT_OUTPUT, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_ALL, true, CLI_OPT_EXTREMES, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_OCTREE_HEIGHT, true, CLI_OPT_ACCEL, FL_ACCEL_OCTREE, CLI_OPT_SOURCE},
+    {CLI_OPT_CHECKPOINT, false, CLI_OPT_ADAPTIVE, 1, CLI_OPT_COUNT},
+    {CLI_OPT_UPDATE, false, CLI_OPT_REPORT, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_EXTREMES, false, CLI_OPT_OUT, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_EXTREMES, false, CLI_OPT_SWEEP, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_GROWTH, false, CLI_OPT_SOURCE, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_GROWTH, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE, CLI_OPT_COUNT},
+    {CLI_OPT_SOURCE, false, CLI_OPT_FIRST_PICTURE, ANY_VALUE, CLI_OPT_COUNT},
 };
 
 static bool is_given(const cli_options *options, cli_option_id id, int value)
@@ -383,7 +386,7 @@ static bool follow_rules(const cli_options *options, char *message, size_t bytes
 {
     for (size_t i = 0; i < FL_COUNT_OF(rules); i++) {
         const cli_option *row = &cli_option_table[rules[i].option], *other = &cli_option_table[rules[i].other];
-        if (!cli_has(options, rules[i].option) ||
+        if (!cli_has(options, rules[i].option) || cli_has(options, rules[i].unless) ||
             is_given(options, rules[i].other, rules[i].value) == rules[i].needs)
             continue;
         bool has_value = rules[i].value != ANY_VALUE;

@@ -63,6 +63,7 @@ def usage():
             ("nothing without --output", ("render", "good.txt", "--aov", "depth", "--json")),
             ("nothing without --accel octree", ("render", "good.txt", "--octree-height", "3", *picture)),
             ("nothing without --accel octree", ("info", "good.txt", "--octree-height", "3", "--accel", "bvh")),
+            ("one scene, got 2", ("bench", "--source-comparison", "--octree-height", "3", "good.txt", "good.txt")),
             ("nothing without --revolve-solver newton", ("render", "good.txt", "--revolve-starts", "3", *picture)),
             ("does not go with --report", ("check", "good.txt", "--update", "--report", "d")),
             ("does not go with --adaptive on", ("render", "good.txt", "--checkpoint", "c", "--adaptive", "on", *picture)),
