@@ -31,13 +31,11 @@ static double distance_to_pivot(const vw_state *state)
     return fl_v3_length(fl_v3_sub(state->pivot, state->look.camera.center));
 }
 
-/* Orbiting, the camera looks at the pivot, and what it looks at stays sharp. */
 static void aim_at_pivot(vw_state *state)
 {
     fl_camera *camera = &state->look.camera;
-    double distance = distance_to_pivot(state);
-    camera->direction = fl_v3_scale(fl_v3_sub(state->pivot, camera->center), 1.0 / distance);
-    camera->focus = distance;
+    fl_vec3 way = fl_v3_sub(state->pivot, camera->center);
+    camera->direction = fl_v3_scale(way, 1.0 / fl_v3_length(way));
 }
 
 double vw_camera_working_depth(const vw_state *state)
@@ -77,6 +75,7 @@ bool vw_camera_orbit_at(vw_state *state, fl_vec3 point)
     state->pivot = point;
     state->mode = VW_MODE_ORBIT;
     aim_at_pivot(state);
+    state->look.camera.focus = distance_to_pivot(state);
     return true;
 }
 
@@ -126,10 +125,15 @@ void vw_camera_fly(vw_state *state, double right, double up, double forward)
         return;
     }
     double distance = distance_to_pivot(state);
+    /* What the camera looks at stays sharp, unless the focus was pulled elsewhere. */
+    bool is_focused = fabs(camera->focus - distance) <= 1e-6 * distance;
     camera->direction = turn(camera, clamp_angle(right / distance), clamp_angle(-up / distance));
-    distance = fl_max(distance - forward, 1e-3 * state->scene_scale);
+    /* Who is closer than that already stays where he is. */
+    distance = fl_max(distance - forward, fl_min(distance, 1e-3 * state->scene_scale));
     camera->center = fl_v3_mad(state->pivot, camera->direction, -distance);
     aim_at_pivot(state);
+    if (is_focused)
+        camera->focus = distance_to_pivot(state);
 }
 
 void vw_camera_pan(vw_state *state, double dx_px, double dy_px)

@@ -7,11 +7,13 @@
 #include "viewer/camera.h"
 #include "viewer/command_run.h"
 
-#define INTENSITY_STEP 1.189207115002721 /* A quarter stop: 2^(1/4). */
-#define WARMTH_STEP    1.05              /* Red over blue changes by its square. */
-#define RADIUS_STEP    1.189207115002721
-#define RADIUS_FIRST   0.05 /* Of a point-like disk, in scene scales. */
-#define NUDGE          0.02 /* Scene scales. */
+#define INTENSITY_STEP  1.189207115002721 /* A quarter stop: 2^(1/4). */
+#define INTENSITY_LEAST 1e-6
+#define INTENSITY_MOST  1e9
+#define WARMTH_STEP     1.05 /* Red over blue changes by its square. */
+#define RADIUS_STEP     1.189207115002721
+#define RADIUS_FIRST    0.05 /* Of a point-like disk, in scene scales. */
+#define NUDGE           0.02 /* Scene scales. */
 
 static fl_light *selected(vw_state *state)
 {
@@ -80,7 +82,8 @@ vw_dirty vw_run_light_intensity(vw_state *state, vw_amount amount)
     fl_vec3 color = state->look.lit_colors[state->light];
     color = fl_v3_scale(color, amount.x > 0.0 ? INTENSITY_STEP : 1.0 / INTENSITY_STEP);
     double most = fl_max(fabs(color.x), fl_max(fabs(color.y), fabs(color.z)));
-    if (!(most > 1e-6 && most < 1e9)) {
+    /* A scene's own light may be outside: it may come back. */
+    if (amount.x > 0.0 ? !(most > 0.0 && most < INTENSITY_MOST) : !(most > INTENSITY_LEAST)) {
         vw_state_say(state, "the light is at its bound");
         return VW_DIRTY_WINDOW;
     }

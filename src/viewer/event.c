@@ -177,6 +177,32 @@ const char *vw_button_nearest(const char *name, size_t name_bytes)
     return nearest(button_names, FL_COUNT_OF(button_names), name, name_bytes, "MOUSE_BUTTON_");
 }
 
+int vw_key_modifier(int key)
+{
+    switch (key) {
+    case GLFW_KEY_LEFT_SHIFT:
+    case GLFW_KEY_RIGHT_SHIFT:
+        return GLFW_MOD_SHIFT;
+    case GLFW_KEY_LEFT_CONTROL:
+    case GLFW_KEY_RIGHT_CONTROL:
+        return GLFW_MOD_CONTROL;
+    case GLFW_KEY_LEFT_ALT:
+    case GLFW_KEY_RIGHT_ALT:
+        return GLFW_MOD_ALT;
+    case GLFW_KEY_LEFT_SUPER:
+    case GLFW_KEY_RIGHT_SUPER:
+        return GLFW_MOD_SUPER;
+    default:
+        return 0;
+    }
+}
+
+int vw_key_of_label(int key, const char *label)
+{
+    char letter = label && label[0] && !label[1] ? upper(label[0]) : 0;
+    return letter >= 'A' && letter <= 'Z' ? GLFW_KEY_A + (letter - 'A') : key;
+}
+
 void vw_event_push(vw_event_queue *queue, const vw_event *event)
 {
     if (queue->begin + queue->count == queue->capacity) {

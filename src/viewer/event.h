@@ -50,7 +50,14 @@ const char *vw_button_name(int button);
 int vw_key_find(const char *name, size_t name_bytes);
 int vw_button_find(const char *name, size_t name_bytes);
 
-/** The same of a gamepad's axes and buttons: "LEFT_X", "RIGHT_TRIGGER"; "A", "DPAD_UP". */
+/** The GLFW_MOD_ bit that a key is held for; 0: it is an ordinary key. */
+int vw_key_modifier(int key);
+
+/** The key that a chord with Ctrl means: letters as the keyboard prints them (`label`, from the
+ * platform; NULL: unknown), so that Ctrl+Z is where Z is; any other key by its place. */
+int vw_key_of_label(int key, const char *label);
+
+/** Names of a gamepad's axes and buttons: "LEFT_X", "RIGHT_TRIGGER"; "A", "DPAD_UP". */
 const char *vw_axis_name(int axis);
 const char *vw_pad_name(int button);
 int vw_axis_find(const char *name, size_t name_bytes);

@@ -9,26 +9,6 @@
 #define FAST_FACTOR 4.0
 #define SLOW_FACTOR 0.25
 
-static int mod_of_key(int key)
-{
-    switch (key) {
-    case GLFW_KEY_LEFT_SHIFT:
-    case GLFW_KEY_RIGHT_SHIFT:
-        return GLFW_MOD_SHIFT;
-    case GLFW_KEY_LEFT_CONTROL:
-    case GLFW_KEY_RIGHT_CONTROL:
-        return GLFW_MOD_CONTROL;
-    case GLFW_KEY_LEFT_ALT:
-    case GLFW_KEY_RIGHT_ALT:
-        return GLFW_MOD_ALT;
-    case GLFW_KEY_LEFT_SUPER:
-    case GLFW_KEY_RIGHT_SUPER:
-        return GLFW_MOD_SUPER;
-    default:
-        return 0;
-    }
-}
-
 static vw_dirty run(vw_input *input, vw_state *state, const vw_command *command,
                     vw_binding_kind kind, vw_amount amount)
 {
@@ -152,6 +132,8 @@ static vw_dirty end_while(vw_input *input, vw_state *state)
 {
     const vw_command *command = input->while_on;
     input->while_on = NULL;
+    if (state->is_region_armed)
+        input->drag = NULL; /* It drew the region; it is not to turn the camera from here. */
     return command ? run(input, state, command, VW_BIND_WHILE, (vw_amount){0.0, 0.0})
                    : VW_DIRTY_NONE;
 }
@@ -196,7 +178,7 @@ static vw_dirty key_event(vw_input *input, vw_state *state, const vw_event *even
 {
     if (event->code < 0 || event->code >= VW_KEY_COUNT)
         return VW_DIRTY_NONE;
-    int mod = mod_of_key(event->code);
+    int mod = vw_key_modifier(event->code);
     if (mod) {
         input->held_mods =
             event->action == GLFW_RELEASE ? input->held_mods & ~mod : input->held_mods | mod;
@@ -206,6 +188,13 @@ static vw_dirty key_event(vw_input *input, vw_state *state, const vw_event *even
         return release(input, state, event->code);
     return press(input, state, event->code, event->mods | input->held_mods,
                  event->action == GLFW_REPEAT);
+}
+
+/* While the camera flies, Shift and Alt are its speed, also for the other hand. */
+static int chord_mods(const vw_input *input, const vw_event *event)
+{
+    int mods = event->mods | input->held_mods;
+    return input->held_count > 0 ? mods & ~(GLFW_MOD_SHIFT | GLFW_MOD_ALT) : mods;
 }
 
 static vw_amount picture_position(const vw_input *input, const vw_state *state)
@@ -224,7 +213,7 @@ static vw_dirty button_event(vw_input *input, vw_state *state, const vw_event *e
         return VW_DIRTY_NONE;
     }
     double factor;
-    int mods = event->mods | input->held_mods;
+    int mods = chord_mods(input, event);
     const vw_command *click =
         vw_command_find(state->keymap, VW_BIND_CLICK, event->code, mods, &factor);
     if (click)
@@ -257,7 +246,7 @@ static vw_dirty scroll_event(vw_input *input, vw_state *state, const vw_event *e
 {
     double factor;
     const vw_command *command =
-        vw_command_find(state->keymap, VW_BIND_WHEEL, 0, event->mods | input->held_mods, &factor);
+        vw_command_find(state->keymap, VW_BIND_WHEEL, 0, chord_mods(input, event), &factor);
     if (!command || event->y == 0.0)
         return VW_DIRTY_NONE;
     return run(input, state, command, VW_BIND_WHEEL, (vw_amount){factor * event->y, 0.0});

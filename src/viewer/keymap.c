@@ -127,7 +127,11 @@ static bool read_code(const reader *r, word w, vw_binding *binding)
     binding->code = printed_key(w);
     if (binding->code < 0)
         binding->code = vw_key_find(w.text, w.bytes);
-    return binding->code >= 0 || unknown(r, w, "key", vw_key_nearest(w.text, w.bytes));
+    if (binding->code < 0)
+        return unknown(r, w, "key", vw_key_nearest(w.text, w.bytes));
+    return !vw_key_modifier(binding->code) ||
+           fl_error(r->diags, loc_of(r, w), "'%.*s' goes with other keys and is none by itself",
+                    (int)w.bytes, w.text);
 }
 
 static bool read_chords(reader *r, size_t command)

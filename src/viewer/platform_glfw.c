@@ -30,8 +30,11 @@ static void push(GLFWwindow *window, const vw_event *event)
 
 static void on_key(GLFWwindow *window, int key, int scancode, int action, int mods)
 {
-    (void)scancode;
     ((platform_glfw *)glfwGetWindowUserPointer(window))->has_keyboard = true;
+    /* Here, so that a record replays the same on any keyboard. A key that is let go is the one
+     * that was pressed: of those with Ctrl nothing is held. */
+    if ((mods & GLFW_MOD_CONTROL) && action != GLFW_RELEASE)
+        key = vw_key_of_label(key, glfwGetKeyName(key, scancode));
     push(window,
          &(vw_event){.kind = VW_EVENT_KEY, .code = key, .action = action, .mods = mods & MODS});
 }

@@ -42,9 +42,12 @@ static const struct {
     {GLFW_KEY_RIGHT, "Right"},
 };
 
-static void key_label(vw_platform *platform, int key, char out[16])
+static void key_label(vw_platform *platform, const vw_binding *binding, char out[16])
 {
-    const char *printed = platform ? platform->ops->key_label(platform, key) : NULL;
+    /* A letter with Ctrl is the one that is printed so already (vw_key_of_label). */
+    int key = binding->code;
+    bool is_letter = (binding->mods & GLFW_MOD_CONTROL) && key >= GLFW_KEY_A && key <= GLFW_KEY_Z;
+    const char *printed = platform && !is_letter ? platform->ops->key_label(platform, key) : NULL;
     const char *label = printed && printed[0] > ' ' ? printed : NULL;
     for (size_t i = 0; i < FL_COUNT_OF(labels) && !label; i++)
         if (labels[i].key == key)
@@ -102,11 +105,11 @@ void vw_words_keys(const vw_command *command, const vw_keymap *keymap, vw_platfo
         case VW_BIND_PRESS:
         case VW_BIND_WHILE:
         case VW_BIND_HOLD:
-            key_label(platform, binding->code, label);
+            key_label(platform, binding, label);
             add(&b, "%s", label);
             if (run_length(binding) > 2) {
                 binding += run_length(binding) - 1;
-                key_label(platform, binding->code, label);
+                key_label(platform, binding, label);
                 add(&b, "-%s", label);
             }
             break;
@@ -353,7 +356,9 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
     buffer b = {out, out_bytes, 0};
     add(&b, "# Controls\n\nMade from the command table (src/viewer/command_table.c); keys are "
             "those of a US keyboard, and\n"
-            "the help in the window (F1) names them as your keyboard prints them.\n");
+            "the help in the window (F1) names them as your keyboard prints them. Letters with "
+            "Ctrl are "
+            "those it prints.\n");
     for (int group = 0; group < VW_GROUP_COUNT; group++) {
         add(&b, "\n## %s\n\n| input | what it does |\n|---|---|\n", vw_group_titles[group]);
         for (size_t i = 0; i < vw_command_count; i++) {
@@ -383,9 +388,11 @@ size_t vw_controls_markdown(char *out, size_t out_bytes)
     add(&b,
         "\n## Files\n\nBookmarks are kept beside the scene as `SCENE.views`, which is scene text "
         "(`View 1 { ... }`); views\nof the scene itself stand in the slots that it leaves empty. "
-        "A snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
+        "The file\nmay be edited meanwhile: of it only the view that is stored is replaced. A "
+        "snapshot (.png, .exr) dropped on the\nwindow, or named in place of a scene, opens "
         "exactly where it was taken. Scene, meshes and textures are\nread again when they are "
-        "saved. `--pin FILE` compares with a picture of another day or program, as V does\nwith "
+        "saved, or made that were missing. `--pin FILE` compares with a picture of another day or "
+        "program, as V does\nwith "
         "the present one: Space flips, Shift+V wipes and subtracts, the error stands in the "
         "corner.\n");
     add(&b, "\n## Gamepad\n\n| input | command |\n|---|---|\n");

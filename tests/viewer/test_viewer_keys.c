@@ -26,6 +26,9 @@ static const struct {
     {"pause = P O\n", 1, 11, "'pause' takes 1 chord at most"},
     {"forward = Shift+UP\n", 1, 11, "'forward' takes keys alone"},
     {"print = F1\nprint = none\n", 2, 1, "'print' was given in line 1"},
+    {"forward = LEFT_SHIFT\n", 1, 11, "'LEFT_SHIFT' goes with other keys"},
+    {"pause = Ctrl+Right_Alt\n", 1, 14, "'Right_Alt' goes with other keys"},
+    {"region = left_control\n", 1, 10, "'left_control' goes with other keys"},
     {"pause = O\n", 1, 1, "a chord of 'pause' belongs to 'lens' too"},
     {"lens = none\npause = O\nprint = Ctrl+D\nquit = Shift+W\n", 4, 1,
      "a chord of 'quit' belongs to 'forward' too"},
@@ -130,6 +133,32 @@ static void every_button_has_a_name(void **unused)
         vw_words_keys(vw_command_named(expected[i][0]), &keymap, NULL, keys);
         assert_string_equal(keys, expected[i][1]);
     }
+}
+
+static const char *german_label(vw_platform *platform, int key)
+{
+    (void)platform;
+    return key == GLFW_KEY_Y ? "z" : key == GLFW_KEY_Z ? "y" : NULL;
+}
+
+/* Letters with Ctrl are found by what the keyboard prints, keys alone by their place. */
+static void letters_with_control_are_those_printed(void **unused)
+{
+    (void)unused;
+    assert_int_equal(vw_key_of_label(GLFW_KEY_Y, "z"), GLFW_KEY_Z);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_Q, "A"), GLFW_KEY_A);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_SEMICOLON, "m"), GLFW_KEY_M);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_1, "&"), GLFW_KEY_1);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_Z, NULL), GLFW_KEY_Z);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_Z, ""), GLFW_KEY_Z);
+    assert_int_equal(vw_key_of_label(GLFW_KEY_Z, "\321\217"), GLFW_KEY_Z);
+    static const vw_platform_ops ops = {.key_label = german_label};
+    vw_platform platform = {.ops = &ops};
+    char keys[VW_KEYS_MAX];
+    vw_words_keys(vw_command_named("undo"), NULL, &platform, keys);
+    assert_string_equal(keys, "Ctrl+Z");
+    vw_words_keys(vw_command_named("region"), NULL, &platform, keys);
+    assert_string_equal(keys, "Y");
 }
 
 static void a_gamepad_flies(void **unused)
@@ -323,6 +352,7 @@ int main(void)
         cmocka_unit_test(no_chord_reaches_two_commands),
         cmocka_unit_test(keys_do_what_the_file_says),
         cmocka_unit_test(every_button_has_a_name),
+        cmocka_unit_test(letters_with_control_are_those_printed),
         cmocka_unit_test(a_gamepad_flies),
         cmocka_unit_test(a_made_up_gamepad_says_what_a_real_one_would),
         cmocka_unit_test(a_gamepad_is_recorded),
