@@ -9,10 +9,11 @@
 #include "io/files.h"
 #include "io/state_text.h"
 
-enum { PATH_BYTES = 1200, FILE_BYTES = 16384 + VW_SLOT_COUNT * FL_LIGHT_TEXT_MAX };
+enum { PATH_BYTES = 1200, SLOT_BYTES = FL_STATE_TEXT_MAX + FL_LIGHT_TEXT_MAX + 32 };
 
-static const char header[] = "firstlight 1\n"
-                             "# Bookmarks: key 1 to 9 goes there, Ctrl with it writes this file.\n";
+static const char header[] =
+    "firstlight 1\n"
+    "# Bookmarks: key 1 to 9 goes there, Ctrl with it writes that view here.\n";
 
 static bool path_of(const char *scene_path, char out[PATH_BYTES])
 {
@@ -31,6 +32,12 @@ static void put(vw_bookmarks *bookmarks, uint32_t slot, const fl_camera *camera,
     bookmarks->cameras[slot] = *camera;
     bookmarks->is_set[slot] = !is_scene;
     bookmarks->is_scene[slot] = is_scene;
+}
+
+static char *load_text(const char *path, fl_diags *diags, size_t *out_bytes)
+{
+    return fl_file_load(path, "bookmarks", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, diags,
+                        out_bytes);
 }
 
 static bool is_empty(const vw_bookmarks *bookmarks, uint32_t slot)
@@ -55,91 +62,183 @@ static void take_scene_views(vw_bookmarks *bookmarks, const fl_scene *scene)
     }
 }
 
-/* The comments that are ours. */
-static void read_lights(vw_bookmarks *bookmarks, const char *text)
+void vw_bookmarks_take_scene(vw_bookmarks *bookmarks, const fl_scene *scene)
 {
-    static const char word[] = "# lights ";
-    for (const char *at = text; (at = strstr(at, word)); at += sizeof word - 1) {
-        const char *numbers = at + sizeof word - 1;
-        char name[2] = {numbers[0], 0};
-        uint32_t slot = slot_of(name);
-        size_t bytes = strcspn(numbers, "\r\n");
-        if ((at != text && at[-1] != '\n') || slot == VW_SLOT_COUNT || bytes < 3 ||
-            bytes - 2 >= FL_LIGHT_TEXT_MAX)
-            continue;
-        memcpy(bookmarks->lights[slot], numbers + 2, bytes - 2);
-        bookmarks->lights[slot][bytes - 2] = 0;
-    }
+    memset(bookmarks->is_scene, 0, sizeof bookmarks->is_scene);
+    if (scene)
+        take_scene_views(bookmarks, scene);
 }
 
-static bool read_file(vw_bookmarks *bookmarks, const char *path, fl_diags *diags)
+/* --- Text ------------------------------------------------------------------------------------ */
+
+typedef struct span {
+    const char *begin, *end;
+} span;
+
+static bool is_word(span word, const char *text)
 {
-    size_t bytes;
-    char *text = fl_file_load(path, "bookmarks", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path},
-                              diags, &bytes);
-    if (!text)
-        return false;
+    size_t bytes = strlen(text);
+    return (size_t)(word.end - word.begin) == bytes && memcmp(word.begin, text, bytes) == 0;
+}
+
+/* The next word or bracket of scene text, comments left out; empty: the end. */
+static span next_word(const char *at)
+{
+    for (at += strspn(at, " \t\n\v\f\r"); *at == '#'; at += strspn(at, " \t\n\v\f\r"))
+        at += strcspn(at, "\n");
+    size_t bytes = strcspn(at, " \t\n\v\f\r{}[]");
+    return (span){at, at + (bytes == 0 && *at ? 1 : bytes)};
+}
+
+/* The block of the view of that name, in text without errors. */
+static bool find_view(const char *text, const char *name, span *out)
+{
+    bool is_view = false, is_ours = false;
+    int depth = 0;
+    for (span word = next_word(text); word.begin < word.end; word = next_word(word.end)) {
+        depth += is_word(word, "{") ? 1 : is_word(word, "}") ? -1 : 0;
+        out->end = word.end;
+        if (is_ours && depth == 0 && is_word(word, "}"))
+            return true;
+        if (depth > 0)
+            continue;
+        is_ours = is_view && is_word(word, name);
+        is_view = is_word(word, "View");
+        if (is_view)
+            out->begin = word.begin;
+    }
+    return false;
+}
+
+/* The line of the comment that holds a slot's lights. */
+static bool find_lights(const char *text, const char *name, span *out)
+{
+    static const char mark[] = "# lights ";
+    for (const char *at = text; (at = strstr(at, mark)); at += sizeof mark - 1) {
+        const char *numbers = at + sizeof mark - 1;
+        *out = (span){at, numbers + strcspn(numbers, "\n")};
+        if ((at == text || at[-1] == '\n') && numbers[0] == name[0] && numbers[1] == ' ')
+            return true;
+    }
+    return false;
+}
+
+/* Take what the file's text holds, but for slots that were stored since. */
+static bool read_text(vw_bookmarks *bookmarks, const char *text, size_t bytes, const char *path,
+                      fl_diags *diags)
+{
     fl_scene *scene =
         fl_scene_parse(text, bytes, path, &(fl_parse_options){0}, &fl_files_on_disk, diags);
-    if (scene)
-        read_lights(bookmarks, text);
-    free(text);
-    if (!scene)
-        return false;
-    for (uint32_t i = 0; i < scene->view_count; i++) {
+    for (uint32_t slot = 0; scene && slot < VW_SLOT_COUNT; slot++) {
+        const char name[2] = {(char)('1' + slot), 0};
+        char *lights = bookmarks->lights[slot];
+        span line;
+        if (bookmarks->is_unsaved[slot])
+            continue;
+        bookmarks->is_set[slot] = false;
+        lights[0] = 0;
+        if (find_lights(text, name, &line))
+            snprintf(lights, FL_LIGHT_TEXT_MAX, "%.*s",
+                     (int)strcspn(line.begin + sizeof "# lights N", "\r\n"),
+                     line.begin + sizeof "# lights N");
+    }
+    for (uint32_t i = 0; scene && i < scene->view_count; i++) {
         uint32_t slot = slot_of(scene->views[i].name);
-        if (slot < VW_SLOT_COUNT)
+        if (slot < VW_SLOT_COUNT && !bookmarks->is_unsaved[slot])
             put(bookmarks, slot, &scene->views[i].camera, false);
     }
     fl_scene_destroy(scene);
-    return true;
+    return scene != NULL;
 }
 
 bool vw_bookmarks_load(vw_bookmarks *bookmarks, const char *scene_path, const fl_scene *scene,
                        fl_diags *diags)
 {
     char path[PATH_BYTES];
+    size_t bytes;
     *bookmarks = (vw_bookmarks){0};
-    if (path_of(scene_path, path) && access(path, F_OK) == 0)
-        bookmarks->is_broken = !read_file(bookmarks, path, diags);
-    if (scene)
-        take_scene_views(bookmarks, scene);
-    return !bookmarks->is_broken;
+    bool is_fine = true;
+    if (path_of(scene_path, path) && access(path, F_OK) == 0) {
+        char *text = load_text(path, diags, &bytes);
+        is_fine = text && read_text(bookmarks, text, bytes, path, diags);
+        free(text);
+    }
+    vw_bookmarks_take_scene(bookmarks, scene);
+    return is_fine;
 }
 
-static bool write_file(const vw_bookmarks *bookmarks, const char *scene_path, fl_diags *diags)
+/* The text with a slot's camera and lights where they stood, or at its end; the rest as it was.
+ * From malloc; `text` is freed. NULL: there is no memory, or no text. */
+static char *with_slot(const vw_bookmarks *bookmarks, uint32_t slot, char *text)
 {
-    char path[PATH_BYTES], text[FILE_BYTES];
-    size_t length = sizeof header - 1;
-    memcpy(text, header, length);
-    for (uint32_t slot = 0; slot < VW_SLOT_COUNT; slot++) {
-        char name[2] = {(char)('1' + slot), 0};
-        if (bookmarks->is_set[slot])
-            length += fl_camera_scene_text(&bookmarks->cameras[slot], name, text + length,
-                                           sizeof text - length);
-        if (bookmarks->is_set[slot] && bookmarks->lights[slot][0])
-            length += (size_t)snprintf(text + length, sizeof text - length, "# lights %s %s\n",
-                                       name, bookmarks->lights[slot]);
-        FL_ASSERT(length < sizeof text);
+    const char name[2] = {(char)('1' + slot), 0}, *lights = bookmarks->lights[slot];
+    span old = {NULL, NULL};
+    while (text && find_lights(text, name, &old)) {
+        const char *rest = old.end + (*old.end == '\n');
+        memmove(text + (old.begin - text), rest, strlen(rest) + 1);
     }
-    if (!path_of(scene_path, path))
-        return fl_environment_error(diags, "the scene's path is too long for bookmarks beside it");
-    return fl_file_save(path, text, length, diags);
+    size_t most = text ? strlen(text) + SLOT_BYTES : 0;
+    char *out = most ? malloc(most) : NULL;
+    if (out) {
+        if (!find_view(text, name, &old))
+            old.begin = old.end = text + strlen(text);
+        size_t length = (size_t)(old.begin - text);
+        memcpy(out, text, length);
+        if (old.begin == old.end && length > 0 && out[length - 1] != '\n')
+            out[length++] = '\n';
+        length +=
+            fl_camera_scene_text(&bookmarks->cameras[slot], name, out + length, most - length);
+        if (lights[0])
+            length +=
+                (size_t)snprintf(out + length, most - length, "# lights %s %s\n", name, lights);
+        FL_ASSERT(length + strlen(old.end) < most);
+        snprintf(out + length, most - length, "%s", old.end + (*old.end == '\n'));
+    }
+    free(text);
+    return out;
+}
+
+/* Put the slots that are not in the file there: into its text as it is now. Others may have
+ * written it, and what is in it besides is theirs. */
+static bool write_slots(vw_bookmarks *bookmarks, const char *path, uint32_t slot, fl_diags *diags)
+{
+    size_t bytes = sizeof header - 1;
+    bool is_there = access(path, F_OK) == 0;
+    fl_diags unsaid = {0};
+    char *text = is_there ? load_text(path, &unsaid, &bytes) : calloc(1, sizeof header);
+    if (text && !is_there)
+        memcpy(text, header, sizeof header);
+    bool is_fine = text && read_text(bookmarks, text, bytes, path, &unsaid);
+    fl_diags_deinit(&unsaid);
+    if (!is_fine) {
+        free(text);
+        return fl_error(diags, (fl_loc){0},
+                        "bookmark %u is kept for this session only: %s has errors", slot, path);
+    }
+    for (uint32_t i = 0; i < VW_SLOT_COUNT; i++)
+        if (bookmarks->is_unsaved[i])
+            text = with_slot(bookmarks, i, text);
+    is_fine = text ? fl_file_save(path, text, strlen(text), diags)
+                   : fl_out_of_memory(diags, "the bookmarks");
+    if (is_fine)
+        memset(bookmarks->is_unsaved, 0, sizeof bookmarks->is_unsaved);
+    free(text);
+    return is_fine;
 }
 
 bool vw_bookmarks_store(vw_bookmarks *bookmarks, uint32_t slot, const fl_camera *camera,
                         const char *lights, const char *scene_path, fl_diags *diags)
 {
+    char path[PATH_BYTES];
     FL_ASSERT(slot >= 1 && slot <= VW_SLOT_COUNT);
     put(bookmarks, slot - 1, camera, false);
     snprintf(bookmarks->lights[slot - 1], FL_LIGHT_TEXT_MAX, "%s", lights);
+    bookmarks->is_unsaved[slot - 1] = true;
     if (!scene_path)
         return true;
-    if (bookmarks->is_broken)
-        return fl_error(diags, (fl_loc){0},
-                        "bookmark %u is kept for this session only: %s.views has errors", slot,
-                        scene_path);
-    return write_file(bookmarks, scene_path, diags);
+    if (!path_of(scene_path, path))
+        return fl_environment_error(diags, "the scene's path is too long for bookmarks beside it");
+    return write_slots(bookmarks, path, slot, diags);
 }
 
 const fl_camera *vw_bookmarks_find(const vw_bookmarks *bookmarks, uint32_t slot)

@@ -76,13 +76,14 @@ vw_dirty vw_run_compare(vw_state *state, vw_amount amount)
     (void)amount;
     state->compare = (vw_compare)((state->compare + 1) % VW_COMPARE_COUNT);
     vw_state_say(state, "compare: %s", compare_names[state->compare]);
-    return VW_DIRTY_SHOW;
+    return state->compare == VW_COMPARE_OFF ? VW_DIRTY_SHOW
+                                            : (vw_dirty)(VW_DIRTY_SHOW | VW_DIRTY_COMPARE);
 }
 
 vw_dirty vw_run_flip(vw_state *state, vw_amount amount)
 {
     state->is_flipped = amount.x != 0.0;
-    return VW_DIRTY_SHOW;
+    return state->is_flipped ? (vw_dirty)(VW_DIRTY_SHOW | VW_DIRTY_COMPARE) : VW_DIRTY_SHOW;
 }
 
 void vw_value_assist(const vw_state *state, char out[VW_VALUE_MAX])

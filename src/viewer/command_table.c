@@ -25,7 +25,8 @@ enum {
     TONEMAP = VW_DIRTY_TONEMAP,
     LIMITS = VW_DIRTY_LIMITS,
     CAMERA = VW_DIRTY_CAMERA,
-    LIGHT = VW_DIRTY_LIGHT
+    LIGHT = VW_DIRTY_LIGHT,
+    COMPARE = VW_DIRTY_SHOW | VW_DIRTY_COMPARE
 };
 
 /* name, group, bindings, repeats, dirty, help, run, value */
@@ -63,12 +64,12 @@ const vw_command vw_commands[] = {
     {"recall", VW_GROUP_MOVE, DIGITS(0), false, VW_DIRTY_RECALL,
      "go to a bookmark", vw_run_recall, NULL},
     {"store", VW_GROUP_MOVE, DIGITS(CTRL), false, VW_DIRTY_STORE,
-     "keep camera and lens as a bookmark", vw_run_store, NULL},
+     "keep camera, lens, lights as a bookmark", vw_run_store, NULL},
 
     {"focus", VW_GROUP_LENS,
      {WHEEL(0, 2.5), KEY(0, COMMA, -1), KEY(0, PERIOD, 1), KEY(SHIFT, COMMA, -10),
       KEY(SHIFT, PERIOD, 10)}, true, CAMERA | WINDOW,
-     "focus nearer, farther by 2 %", vw_run_focus, vw_value_focus},
+     "focus by 2 %, wheel 5 %, with Shift 22 %", vw_run_focus, vw_value_focus},
     {"focus-at", VW_GROUP_LENS, {CLICK(SHIFT, LEFT)}, false, VW_DIRTY_PICK,
      "focus at the point", vw_run_focus_at, NULL},
     {"focus-through", VW_GROUP_LENS, {CLICK(CTRL | SHIFT, LEFT)}, false, VW_DIRTY_PICK_THROUGH,
@@ -82,7 +83,7 @@ const vw_command vw_commands[] = {
     {"aperture", VW_GROUP_LENS,
      {KEY(0, LEFT_BRACKET, -1), KEY(0, RIGHT_BRACKET, 1), KEY(SHIFT, LEFT_BRACKET, -3),
       KEY(SHIFT, RIGHT_BRACKET, 3)}, true, CAMERA | WINDOW,
-     "aperture by a third of a stop", vw_run_aperture, vw_value_aperture},
+     "aperture by a third of a stop, a whole one", vw_run_aperture, vw_value_aperture},
     {"lens", VW_GROUP_LENS, {KEY(0, O, 1)}, false, CAMERA,
      "pinhole or lens", vw_run_lens, NULL},
     {"fov", VW_GROUP_LENS, {WHEEL(CTRL, 1)}, false, CAMERA | WINDOW,
@@ -118,9 +119,9 @@ const vw_command vw_commands[] = {
      "pause, resume", vw_run_pause, vw_value_pause},
     {"pin", VW_GROUP_PICTURE, {KEY(0, V, 1)}, false, VW_DIRTY_PIN,
      "pin the picture to compare with", vw_run_pin, NULL},
-    {"compare", VW_GROUP_PICTURE, {KEY(SHIFT, V, 1)}, false, VW_DIRTY_SHOW,
+    {"compare", VW_GROUP_PICTURE, {KEY(SHIFT, V, 1)}, false, COMPARE,
      "wipe at the cursor; difference", vw_run_compare, vw_value_compare},
-    {"flip", VW_GROUP_PICTURE, {WHILE(SPACE)}, false, VW_DIRTY_SHOW,
+    {"flip", VW_GROUP_PICTURE, {WHILE(SPACE)}, false, COMPARE,
      "while held: the pinned picture", vw_run_flip, NULL},
 
     {"layer", VW_GROUP_UNDERSTAND,
@@ -153,7 +154,7 @@ const vw_command vw_commands[] = {
      "read the scene again (done when it is saved)", vw_run_reload, NULL},
     {"escape", VW_GROUP_PROGRAM, {KEY(0, ESCAPE, 1)}, false,
      WINDOW | VW_DIRTY_QUIT | VW_DIRTY_SHOW,
-     "close help or board; twice: quit", vw_run_escape, NULL},
+     "close error, help, board; twice: quit", vw_run_escape, NULL},
     {"quit", VW_GROUP_PROGRAM, {KEY(CTRL, Q, 1)}, false, VW_DIRTY_QUIT,
      "quit", vw_run_quit, NULL},
 };

@@ -304,8 +304,10 @@ void vw_session_set_limits(vw_session *session)
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
 {
     vw_scene scene = {0};
-    if (!session->options->loader.load(session->options->loader.context, path, &scene, diags))
+    if (!session->options->loader.load(session->options->loader.context, path, &scene, diags)) {
+        vw_scene_deinit(&scene);
         return false;
+    }
     return vw_session_adopt(session, path, &scene, diags);
 }
 
@@ -326,6 +328,7 @@ bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, fl
         vw_look before = session->state.start;
         vw_state_rebase(&session->state, &scene->params, scene->compiled, sample_cap(session));
         vw_history_rebase(&session->history, &session->state, &before);
+        vw_bookmarks_take_scene(&session->bookmarks, scene->scene);
     } else {
         begin_scene(session, diags);
     }

@@ -165,6 +165,8 @@ fl_tonemap vw_session_tonemap(const vw_session *session, const vw_state *state);
 void vw_session_note_asked(vw_session *session);
 void vw_show_deinit(vw_show *show);
 vw_dirty vw_show_toggle_pin(vw_session *session, fl_diags *diags);
+/** Say why the pinned picture, which was asked for, is not seen, if so. */
+void vw_show_explain_pin(vw_session *session);
 /** Pin the picture of a file. False after adding an error. */
 bool vw_show_load_pin(vw_session *session, const char *path, fl_diags *diags);
 /** The state's picture changed, or what is to be shown of it. */

@@ -247,6 +247,8 @@ vw_dirty vw_session_answer(vw_session *session, vw_dirty dirty, fl_diags *diags)
         vw_state_say(state, "a preview is not pinned");
     else if (dirty & VW_DIRTY_PIN)
         all |= vw_show_toggle_pin(session, diags);
+    if (dirty & VW_DIRTY_COMPARE)
+        vw_show_explain_pin(session);
     if (dirty & VW_DIRTY_RAYS)
         all |= vw_insight_rays(session, diags);
     note_step(session); /* Before undo: what the events so far did is a step of its own. */

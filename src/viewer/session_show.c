@@ -83,6 +83,19 @@ static bool has_pin(const vw_session *session)
            pin->height == session->progress.height;
 }
 
+void vw_show_explain_pin(vw_session *session)
+{
+    const vw_pin *pin = &session->show.pin;
+    const fl_progress *shown = &session->progress;
+    if (!pin->rgb)
+        vw_state_say(&session->state, "pin a picture first (V)");
+    else if (session->mix.unit)
+        vw_state_say(&session->state, "a preview is not compared");
+    else if (!has_pin(session))
+        vw_state_say(&session->state, "pinned: %u \303\227 %u pixels; this picture: %u \303\227 %u",
+                     pin->width, pin->height, shown->width, shown->height);
+}
+
 static void tonemap_pin(vw_session *session)
 {
     vw_pin *pin = &session->show.pin;

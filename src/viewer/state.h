@@ -108,6 +108,7 @@ typedef enum vw_dirty {
     VW_DIRTY_PASTE = 1 << 15,    /**< The camera that the clipboard holds. */
     VW_DIRTY_PIN = 1 << 16,      /**< Keep or drop the picture as it is now. */
     VW_DIRTY_ORBIT_AT = 1 << 18, /**< Orbit what stands at the cursor. */
+    VW_DIRTY_COMPARE = 1 << 19,  /**< The pinned picture is to be seen: say so if it cannot. */
     VW_DIRTY_RAYS = 1 << 17, /**< The tree of rays of sample `rays_sample` at (rays_x, rays_y). */
     /** The colour of the selected light; vw_session_answer turns it into TONEMAP or CAMERA. */
     VW_DIRTY_LIGHT = 1 << 24

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Undo, bookmarks, cameras as text, racking, watching files, and pictures that open again.
+ * Undo, bookmarks, cameras as text, racking, and pictures that open again.
  */
 #include "viewer_kit.h"
 
 #include <math.h>
-#include <pthread.h>
 
 #include "io/image_file.h"
-#include "viewer/watch.h"
 
 static void undo_and_redo_walk_the_same_looks(void **unused)
 {
@@ -240,6 +238,139 @@ static void bookmarks_stay_beside_the_scene(void **unused)
     vw_session_close(&session);
 }
 
+static char *read_whole(const char *path)
+{
+    fl_diags diags = {0};
+    size_t bytes;
+    char *text = fl_file_load(path, "file", 1 << 20, (fl_loc){0}, &diags, &bytes);
+    assert_non_null(text);
+    return text;
+}
+
+/* What a hand, or another window, has put into the file stays there, byte for byte. */
+static void storing_a_bookmark_replaces_that_alone(void **unused)
+{
+    (void)unused;
+    static const char before[] = "firstlight 1\n"
+                                 "# mine # View 2 { is not one }\n"
+                                 "View door{center 1 0 5 direction 0 0 -1 up 0 1 0 angle 30}",
+                      second[] = " View 2\n{ # {\n  center 2 0 5 direction 0 0 -1 up 0 1 0\n"
+                                 "  angle 30 }",
+                      lights[] = "# lights 2 nothing\n", after[] = " # behind\n",
+                      other[] = "View 7 { center 7 0 5 direction 0 0 -1 up 0 1 0 angle 30 }";
+    char scene[256], views[256], text[2048];
+    write_file("marks.txt",
+               "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 "
+               "}\n",
+               scene);
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, scene);
+    /* Written while the window is open. */
+    snprintf(text, sizeof text, "%s%s%s%s%s", before, second, after, lights, other);
+    write_file("marks.txt.views", text, views);
+    session.state.look.camera.center.x = 22.0;
+    tap(&session, GLFW_KEY_2, GLFW_MOD_CONTROL, 100);
+    session.state.look.camera.center.x = 33.0;
+    tap(&session, GLFW_KEY_3, GLFW_MOD_CONTROL, 200);
+    char *now = read_whole(views);
+    assert_memory_equal(now, before, strlen(before));
+    assert_memory_equal(now + strlen(before), " View 2 {\n    center 22 ", 24);
+    assert_null(strstr(now, "lights"));
+    char *rest = strstr(now, "}\n # behind\nView 7 {");
+    assert_non_null(rest);
+    rest = strstr(rest, other);
+    assert_memory_equal(rest + strlen(other), "\nView 3 {\n    center 33 ", 24);
+    assert_null(strstr(rest + strlen(other) + 2, "View"));
+    /* The other window's is there as well. */
+    tap(&session, GLFW_KEY_7, 0, 300);
+    assert_true(session.state.look.camera.center.x == 7.0);
+    /* The same again: the same bytes; with lights: their line, once. */
+    session.state.look.camera.center.x = 33.0;
+    session.state.look.camera.fov_deg = 40.0;
+    tap(&session, GLFW_KEY_3, GLFW_MOD_CONTROL, 400);
+    char *again = read_whole(views);
+    assert_string_equal(now, again);
+    free(now);
+    free(again);
+    fl_diags diags = {0};
+    fl_camera camera = session.state.look.camera;
+    for (int i = 0; i < 2; i++)
+        assert_true(vw_bookmarks_store(&session.bookmarks, 2, &camera, "0 1 2", scene, &diags));
+    now = read_whole(views);
+    rest = strstr(now, "}\n# lights 2 0 1 2\n # behind\n");
+    assert_non_null(rest);
+    assert_null(strstr(rest + 5, "lights"));
+    free(now);
+    /* A broken file is left alone; once it is mended, what was stored meanwhile comes too. */
+    write_file("marks.txt.views", "firstlight 1\nView 1 { centre 0 }\n", views);
+    camera.center.x = 5.0;
+    assert_false(vw_bookmarks_store(&session.bookmarks, 5, &camera, "", scene, &diags));
+    fl_diags_deinit(&diags);
+    write_file("marks.txt.views", before, views);
+    assert_true(vw_bookmarks_store(&session.bookmarks, 6, &camera, "", scene, &diags));
+    now = read_whole(views);
+    assert_non_null(strstr(now, "View 5 {\n    center 5 "));
+    assert_non_null(strstr(now, "View 6 {\n    center 5 "));
+    assert_null(strstr(now, "View 2 {\n"));
+    assert_null(vw_bookmarks_find(&session.bookmarks, 2));
+    free(now);
+    unlink(views);
+    vw_session_close(&session);
+}
+
+static void views_of_a_reloaded_scene_are_the_new_ones(void **unused)
+{
+    (void)unused;
+    static const char text[] =
+        "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }\n"
+        "View %d { center %d 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n";
+    char scene[256], now[512];
+    vw_options options = viewer_test_options();
+    vw_session session;
+    fl_diags diags = {0};
+    for (int i = 3; i <= 4; i++) {
+        snprintf(now, sizeof now, text, i, i);
+        write_file("marks.txt", now, scene);
+        if (i == 3)
+            open_session(&session, &options, scene);
+        else
+            assert_true(vw_session_load(&session, scene, &diags));
+        if (i == 3)
+            assert_true(vw_bookmarks_store(&session.bookmarks, 1, &session.state.look.camera, "",
+                                           NULL, &diags));
+        assert_true(vw_bookmarks_find(&session.bookmarks, (uint32_t)i)->center.x == i);
+        assert_null(vw_bookmarks_find(&session.bookmarks, (uint32_t)(7 - i)));
+        assert_non_null(vw_bookmarks_find(&session.bookmarks, 1)); /* Stored, not the scene's. */
+    }
+    vw_session_close(&session);
+}
+
+static void a_pin_that_is_not_seen_is_explained(void **unused)
+{
+    (void)unused;
+    vw_options options = viewer_test_options();
+    vw_session session;
+    open_session(&session, &options, VIEWER_TEST_SCENE);
+    vw_state *state = &session.state;
+    tap(&session, GLFW_KEY_SPACE, 0, 10);
+    assert_string_equal(vw_state_message(state), "pin a picture first (V)");
+    tap(&session, GLFW_KEY_V, GLFW_MOD_SHIFT, 5000);
+    assert_string_equal(vw_state_message(state), "pin a picture first (V)");
+    session.show.pin.rgb = calloc(12, sizeof(float));
+    session.show.pin.rgba = calloc(4, 4);
+    session.show.pin.width = session.show.pin.height = 2;
+    session.progress.width = 3;
+    session.progress.height = 4;
+    tap(&session, GLFW_KEY_SPACE, 0, 10000);
+    assert_string_equal(vw_state_message(state),
+                        "pinned: 2 \303\227 2 pixels; this picture: 3 \303\227 4");
+    session.progress.width = session.progress.height = 2;
+    tap(&session, GLFW_KEY_SPACE, 0, 20000);
+    assert_null(vw_state_message(state));
+    vw_session_close(&session);
+}
+
 static void cameras_read_back_from_both_texts(void **unused)
 {
     (void)unused;
@@ -327,61 +458,6 @@ static void racking_arrives_on_time_and_exactly(void **unused)
     vw_input_advance(&session.input, state, 60000);
     assert_true(state->look.camera.focus == 8.0);
     vw_session_close(&session);
-}
-
-typedef struct bell {
-    pthread_mutex_t lock;
-    pthread_cond_t rung;
-    uint32_t count;
-} bell;
-
-static void ring(void *context)
-{
-    bell *b = context;
-    pthread_mutex_lock(&b->lock);
-    b->count++;
-    pthread_cond_signal(&b->rung);
-    pthread_mutex_unlock(&b->lock);
-}
-
-static void wait_for(bell *b, uint32_t count)
-{
-    pthread_mutex_lock(&b->lock);
-    while (b->count < count)
-        pthread_cond_wait(&b->rung, &b->lock);
-    pthread_mutex_unlock(&b->lock);
-}
-
-static void saved_files_ring_and_others_do_not(void **unused)
-{
-    (void)unused;
-    bell b = {.lock = PTHREAD_MUTEX_INITIALIZER, .rung = PTHREAD_COND_INITIALIZER};
-    vw_watch *watch = vw_watch_create(ring, &b);
-    if (!watch)
-        skip();
-    char path[256], other[256], fresh[256];
-    write_file("watched.txt", "1", path);
-    const char *paths[] = {path};
-    vw_watch_set(watch, paths, 1);
-    assert_false(vw_watch_take(watch));
-    write_file("other.txt", "1", other);
-    write_file("watched.txt", "2", path);
-    wait_for(&b, 1);
-    assert_true(vw_watch_take(watch));
-    assert_false(vw_watch_take(watch));
-    /* As editors do: a new file takes the place of the old one. */
-    write_file("fresh.txt", "3", fresh);
-    assert_int_equal(rename(fresh, path), 0);
-    wait_for(&b, 2);
-    assert_true(vw_watch_take(watch));
-    /* Watched no more. */
-    const char *others[] = {other};
-    vw_watch_set(watch, others, 1);
-    write_file("watched.txt", "4", path);
-    write_file("other.txt", "2", other);
-    wait_for(&b, 3);
-    assert_int_equal(b.count, 3);
-    vw_watch_destroy(watch);
 }
 
 /* Render the session's state to exactly that many samples and save it. */
@@ -472,9 +548,8 @@ static void other_pictures_are_refused(void **unused)
 static int remove_folder(void **unused)
 {
     (void)unused;
-    static const char *const names[] = {"marks.txt", "marks.txt.views", "watched.txt", "other.txt",
-                                        "fresh.txt", "state.png",       "state.exr",   "again.png",
-                                        "again.exr", "plain.png"};
+    static const char *const names[] = {"marks.txt", "marks.txt.views", "state.png", "state.exr",
+                                        "again.png", "again.exr",       "plain.png"};
     return remove_files(names, FL_COUNT_OF(names));
 }
 
@@ -488,9 +563,11 @@ int main(void)
         cmocka_unit_test(what_is_rendered_is_not_begun_again),
         cmocka_unit_test(the_lens_that_reset_forgets_comes_back),
         cmocka_unit_test(bookmarks_stay_beside_the_scene),
+        cmocka_unit_test(storing_a_bookmark_replaces_that_alone),
+        cmocka_unit_test(views_of_a_reloaded_scene_are_the_new_ones),
+        cmocka_unit_test(a_pin_that_is_not_seen_is_explained),
         cmocka_unit_test(cameras_read_back_from_both_texts),
         cmocka_unit_test(racking_arrives_on_time_and_exactly),
-        cmocka_unit_test(saved_files_ring_and_others_do_not),
         cmocka_unit_test(a_saved_picture_opens_where_it_was),
         cmocka_unit_test(other_pictures_are_refused),
     };
