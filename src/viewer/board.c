@@ -228,20 +228,54 @@ static void draw_axes(const frame *f, const scales *s, const vw_plot *plot)
     vw_overlay_text(f->overlay, VW_FACE_NORMAL,
                     s->left - (vw_text_columns(plot->y_unit) + 1) * f->cell.width,
                     s->top + (s->height - f->cell.height) / 2.0, dim_ink, plot->y_unit);
-    number(fl_d_exp2(s->x0), value);
-    snprintf(text, sizeof text, "%s %s", value, plot->x_unit);
-    vw_overlay_text(f->overlay, VW_FACE_NORMAL, s->left, s->top + s->height, dim_ink, text);
     number(fl_d_exp2(s->x1), value);
     snprintf(text, sizeof text, "%s %s", value, plot->x_unit);
-    vw_overlay_text(f->overlay, VW_FACE_NORMAL,
-                    s->left + s->width - vw_text_columns(text) * f->cell.width, s->top + s->height,
-                    dim_ink, text);
+    double right = s->left + s->width - vw_text_columns(text) * f->cell.width;
+    vw_overlay_text(f->overlay, VW_FACE_NORMAL, right, s->top + s->height, dim_ink, text);
+    number(fl_d_exp2(s->x0), value);
+    snprintf(text, sizeof text, "%s %s", value, plot->x_unit);
+    if (s->left + (vw_text_columns(text) + 1) * f->cell.width <= right)
+        vw_overlay_text(f->overlay, VW_FACE_NORMAL, s->left, s->top + s->height, dim_ink, text);
 }
 
 static void draw_dot(const frame *f, double x, double y, double size, vw_ink ink)
 {
     vw_overlay_panel(f->overlay, floor(x - size / 2.0), floor(y - size / 2.0), size, size,
                      size / 2.0, ink);
+}
+
+void vw_board_clear_label(vw_label *labels, uint32_t count, double height)
+{
+    vw_label *last = &labels[count - 1];
+    for (uint32_t i = 0; i + 1 < count;) {
+        const vw_label *other = &labels[i++];
+        if (last->x < other->x + other->width && other->x < last->x + last->width &&
+            last->y < other->y + height && other->y < last->y + height) {
+            last->y = other->y + height;
+            i = 0; /* Another may stand there. */
+        }
+    }
+}
+
+/* What other settings would buy, each with its sign beside it. */
+static void draw_marks(const frame *f, const scales *s, const vw_plot *plot)
+{
+    vw_label labels[FL_COUNT_OF(plot->marks)];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < plot->mark_count; i++) {
+        double x, y;
+        const vw_mark *mark = &plot->marks[i];
+        if (!is_plottable(mark->x, mark->y))
+            continue;
+        place(s, mark->x, mark->y, &x, &y);
+        draw_dot(f, x, y, 5.0 * f->scale, value_ink);
+        vw_label *label = &labels[count++];
+        label->width = vw_text_columns(mark->sign) * f->cell.width;
+        label->x = fl_min(x + 4.0 * f->scale, s->left + s->width - label->width);
+        label->y = y - f->cell.height * 0.9;
+        vw_board_clear_label(labels, count, f->cell.height);
+        vw_overlay_text(f->overlay, VW_FACE_NORMAL, label->x, label->y, value_ink, mark->sign);
+    }
 }
 
 static void draw_plot(const frame *f, const vw_plot *plot, double top)
@@ -268,16 +302,7 @@ static void draw_plot(const frame *f, const vw_plot *plot, double top)
         place(&s, b[0], b[1], &x, &y);
         draw_dot(f, x, y, (i + 1 == plot->count ? 9.0 : 4.0) * f->scale, bar_ink);
     }
-    for (uint32_t i = 0; i < plot->mark_count; i++) {
-        double x, y;
-        const vw_mark *mark = &plot->marks[i];
-        if (!is_plottable(mark->x, mark->y))
-            continue;
-        place(&s, mark->x, mark->y, &x, &y);
-        draw_dot(f, x, y, 5.0 * f->scale, value_ink);
-        vw_overlay_text(f->overlay, VW_FACE_NORMAL, x + 4.0 * f->scale, y - f->cell.height * 0.9,
-                        value_ink, mark->sign);
-    }
+    draw_marks(f, &s, plot);
 }
 
 void vw_board_draw(const vw_board *board, vw_overlay *overlay, double right, double top,

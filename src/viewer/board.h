@@ -49,6 +49,14 @@ void vw_board_add(vw_board *board, double bar, const char *label, const char *fo
 /** Add a dim row of text alone. */
 void vw_board_note(vw_board *board, const char *format, ...) FL_PRINTF(2, 3);
 
+/** The place of a line of text. */
+typedef struct vw_label {
+    double x, y, width;
+} vw_label;
+
+/** Move the last of `count` labels, all `height` high, down until it is clear of the others. */
+void vw_board_clear_label(vw_label *labels, uint32_t count, double height);
+
 /** Draw with the right upper corner at (right, top), at most `width` wide, not below `bottom`: rows
  * that find no room are left out, and long ones cut. */
 void vw_board_draw(const vw_board *board, vw_overlay *overlay, double right, double top,

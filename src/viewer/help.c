@@ -6,7 +6,7 @@
 
 enum {
     SIZE_MAX_PX = 14,
-    SIZE_MIN_PX = 8,
+    SIZE_MIN_PX = 6,
     VALUE_COLUMNS = 9,
     KEYS_GAP = 2,
     HELP_GAP = 2,
@@ -64,6 +64,12 @@ static bool try_size(vw_help *help, vw_cell cell, uint32_t columns, uint32_t key
            help->height + 2.0 * margin <= (double)state->height;
 }
 
+/* The larger part of the window that it takes, up or across. */
+static double part_of_window(const vw_help *help, const vw_state *state)
+{
+    return fl_max(help->width / (double)state->width, help->height / (double)state->height);
+}
+
 void vw_help_layout(vw_help *help, const vw_overlay *overlay, vw_platform *platform,
                     const vw_state *state, double scale)
 {
@@ -87,6 +93,12 @@ void vw_help_layout(vw_help *help, const vw_overlay *overlay, vw_platform *platf
             try_size(help, cell, 2, keys, text, state))
             return;
     }
+    /* Too small for all of it: as much as can be. */
+    vw_cell cell = vw_overlay_cell_of(overlay, help->size_px);
+    double part = part_of_window(help, state);
+    try_size(help, cell, 1, keys, text, state);
+    if (part_of_window(help, state) > part)
+        try_size(help, cell, 2, keys, text, state);
 }
 
 static void draw_row(const vw_help *help, vw_overlay *overlay, const vw_state *state, size_t i,

@@ -353,9 +353,38 @@ static int finish(void **unused)
     return remove_files((const char *const[]){"wide.txt"}, 1);
 }
 
+static void signs_of_a_plot_stand_clear_of_each_other(void **unused)
+{
+    (void)unused;
+    enum { LABELS = 8, ROUNDS = 1000 };
+    uint32_t seed = 3;
+    printf("seed %u\n", seed);
+    for (uint32_t round = 0; round < ROUNDS; round++) {
+        vw_label labels[LABELS];
+        for (uint32_t i = 0; i < LABELS; i++) {
+            seed = fl_lowbias32(seed + 1);
+            vw_label wanted = {seed % 40 / 7.0, seed / 64 % 300 / 7.0,
+                               1.0 + seed / 65536 % 9 / 7.0};
+            labels[i] = wanted;
+            vw_board_clear_label(labels, i + 1, 12.0);
+            assert_true(labels[i].x == wanted.x && labels[i].width == wanted.width);
+            bool was_clear = true;
+            for (uint32_t j = 0; j < i; j++) {
+                bool is_beside = labels[i].x >= labels[j].x + labels[j].width ||
+                                 labels[j].x >= labels[i].x + labels[i].width;
+                assert_true(is_beside || fabs(labels[i].y - labels[j].y) > 11.999);
+                was_clear &= is_beside || fabs(wanted.y - labels[j].y) > 11.999;
+            }
+            double moved = labels[i].y - wanted.y;
+            assert_true(moved >= 0.0 && (was_clear ? moved < 0.001 : moved > 0.0));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(signs_of_a_plot_stand_clear_of_each_other),
         cmocka_unit_test(a_click_prints_the_rays_of_a_sample),
         cmocka_unit_test(the_inspector_knows_the_pixel),
         cmocka_unit_test(the_meter_says_what_the_scene_needs),

@@ -171,7 +171,8 @@ static void a_dense_screen_has_larger_text(void **unused)
 static void help_draws_in_its_panel_only(void **unused)
 {
     (void)unused;
-    static const uint32_t sizes[][2] = {{640, 640}, {1280, 720}, {320, 240}, {1920, 400}};
+    static const uint32_t sizes[][2] = {
+        {640, 640}, {1280, 720}, {320, 240}, {1920, 400}, {640, 300}};
     for (size_t i = 0; i < FL_COUNT_OF(sizes); i++) {
         scene s;
         OPEN_OR_SKIP(&s, sizes[i][0], sizes[i][1], sizes[i][0], sizes[i][1]);
