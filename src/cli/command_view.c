@@ -14,13 +14,13 @@ static bool load(void *context, const char *path, vw_scene *out, fl_diags *diags
 {
     const cli_options *options = context;
     uint32_t quick_above = cli_has(options, CLI_OPT_QUICK_ABOVE) ? options->quick_above : FL_QUICK_ABOVE;
-    cli_scene scene = {.diags = diags, .quick_above = quick_above};
+    cli_scene scene = {.diags = diags, .quick_above = quick_above, .files = &out->files};
     bool ok = cli_scene_open(options, path, &scene);
     if (ok) {
-        *out = (vw_scene){.scene = scene.scene,
-                          .compiled = scene.compiled,
-                          .params = scene.params,
-                          .samples = scene.state.samples};
+        out->scene = scene.scene;
+        out->compiled = scene.compiled;
+        out->params = scene.params;
+        out->samples = scene.state.samples;
         if (scene.state.scene_path)
             snprintf(out->path, sizeof out->path, "%s", scene.path);
         scene.scene = NULL;

@@ -100,12 +100,15 @@ void cli_note_slips(const char *text, size_t bytes, const char *path, const fl_p
 
 bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *out)
 {
+    fl_file_list_add(out->files, path);
     if (fl_saved_state_is_for(path)) {
         if (!fl_saved_state_load(path, &out->state, out->diags))
             return false;
         path = out->state.scene_path;
     }
     bool is_reopened = out->state.scene_path != NULL;
+    if (is_reopened)
+        fl_file_list_add(out->files, path);
     out->path = path;
     size_t bytes;
     char *text = fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, out->diags, &bytes);
@@ -114,7 +117,8 @@ bool cli_scene_parse(const cli_options *options, const char *path, cli_scene *ou
     fl_parse_options parse = {.has_dialect = is_reopened || cli_has(options, CLI_OPT_DIALECT),
                               .dialect = is_reopened ? out->state.dialect : (fl_dialect)options->dialect,
                               .is_lenient = cli_has(options, CLI_OPT_LENIENT)};
-    out->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, out->diags);
+    fl_files files = fl_files_listed(out->files);
+    out->scene = fl_scene_parse(text, bytes, path, &parse, &files, out->diags);
     if (!out->scene)
         cli_note_slips(text, bytes, path, &parse, out->diags);
     free(text);

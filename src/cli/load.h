@@ -6,9 +6,10 @@
 #define CLI_LOAD_H
 
 #include "cli/options.h"
+#include "io/file_list.h"
 #include "io/state_text.h"
 
-/** A scene on its way to a picture. Zero-initialise but for `diags` and quick_above; cli_scene_close frees whatever is there. */
+/** A scene on its way to a picture. Zero-initialise but for `diags`, `files` and quick_above; cli_scene_close frees whatever is there. */
 typedef struct cli_scene {
     const char *path; /**< Of the scene's text: borrowed from the options, or the state's. */
     fl_saved_state state; /**< Of the picture that was named in place of a scene; has a path only then. */
@@ -16,6 +17,7 @@ typedef struct cli_scene {
     fl_compiled *compiled;
     fl_params params; /**< Borrows lights from `scene`. */
     fl_diags *diags;  /**< Borrowed: where everything wrong is said. */
+    fl_file_list *files; /**< Borrowed: gets what it is made from, and what is missing; NULL: not wanted. */
     uint32_t quick_above;  /**< As fl_compile_options, for callers who refine what is compiled quickly. */
     double load_seconds;   /**< What cli_scene_open took, wall time. */
 } cli_scene;

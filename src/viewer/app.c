@@ -45,7 +45,8 @@ typedef struct app {
     char snapshot[64];         /**< Where the one that is ordered goes. */
     uint64_t done_generation;  /**< Last picture announced as done. */
     uint32_t done_samples;
-    bool wants_refresh; /**< Ask the render without waiting for the next due time. */
+    char watched_path[VW_PATH_MAX]; /**< The scene whose files are watched. */
+    bool wants_refresh;             /**< Ask the render without waiting for the next due time. */
     bool needs_draw, has_quit;
     bool has_newer; /**< Of the picture, and it was not drawn yet. */
     char title[160];
@@ -109,21 +110,11 @@ static void ask_paste(app *a)
     vw_event_push(&a->platform->events, &event);
 }
 
-/* The scene's files, as they are now. */
-static void watch_files(app *a)
+/* The files of the scene that was read last, well or not: a mistake ends where it was made. */
+static void watch_files(app *a, const char *path, const fl_file_list *files)
 {
-    const fl_scene *scene = a->session.scene.scene;
-    size_t most = 1 + (scene ? (size_t)scene->mesh_count + scene->image_count : 0), count = 0;
-    const char **paths = calloc(most, sizeof *paths);
-    if (!paths)
-        return;
-    paths[count++] = a->session.scene_path;
-    for (uint32_t i = 0; scene && i < scene->mesh_count; i++)
-        paths[count++] = scene->meshes[i].path;
-    for (uint32_t i = 0; scene && i < scene->image_count; i++)
-        paths[count++] = scene->images[i].path;
-    vw_watch_set(a->watch, paths, count);
-    free(paths);
+    snprintf(a->watched_path, sizeof a->watched_path, "%s", path);
+    vw_watch_set(a->watch, files);
 }
 
 /* When the changed files may be read; UINT64_MAX: they did not change, or are of a scene that may
@@ -133,7 +124,8 @@ static uint64_t reload_from_ms(const app *a)
     return a->dropped[0] ? UINT64_MAX : a->reload_ms;
 }
 
-/* Changed files are read again by an event, which a record keeps. */
+/* Changed files are read again by an event, which a record keeps; a dropped scene that could not be
+ * read as if it were dropped again. */
 static void reload_if_changed(app *a)
 {
     if (vw_watch_take(a->watch))
@@ -141,7 +133,12 @@ static void reload_if_changed(app *a)
     if (a->now_ms < reload_from_ms(a))
         return;
     a->reload_ms = UINT64_MAX;
-    vw_event_push(&a->platform->events, &(vw_event){.kind = VW_EVENT_RELOAD});
+    vw_event event = {.kind = VW_EVENT_RELOAD};
+    if (strcmp(a->watched_path, a->session.source_path) != 0) {
+        event.kind = VW_EVENT_DROP;
+        memcpy(event.path, a->watched_path, sizeof event.path);
+    }
+    vw_event_push(&a->platform->events, &event);
 }
 
 /* Read by its own thread; the old picture stays and can be used until then. */
@@ -171,9 +168,17 @@ static void take_loaded(app *a)
         return;
     bool is_dropped = strcmp(path, a->dropped) == 0;
     bool is_other = is_dropped || strcmp(path, a->session.source_path) != 0;
+    bool is_read = scene.compiled != NULL;
     if (is_dropped)
         a->dropped[0] = 0;
-    if (!scene.compiled || !vw_session_adopt(&a->session, path, &scene, &a->diags)) {
+    if (is_read) {
+        vw_session_clear_error(&a->session); /* Before its bookmarks, which may have errors too. */
+        is_read = vw_session_adopt(&a->session, path, &scene, &a->diags);
+    } else {
+        watch_files(a, path, &scene.files);
+        vw_scene_deinit(&scene);
+    }
+    if (!is_read) {
         a->session.state.message_until_ms = 0; /* "reading" */
         show_error(a);
         return;
@@ -183,9 +188,7 @@ static void take_loaded(app *a)
         a->reload_ms = UINT64_MAX;
     }
     fl_diags_deinit(&a->diags);
-    if (a->diags.error_count == 0)
-        vw_session_clear_error(&a->session);
-    watch_files(a);
+    watch_files(a, a->session.source_path, &a->session.scene.files);
     vw_state_say(&a->session.state, "loaded");
     vw_session_set_limits(&a->session);
     a->restart_ms = a->now_ms;
@@ -513,7 +516,7 @@ bool vw_run(const vw_options *options, fl_diags *diags)
     if (is_fine) {
         clock_gettime(CLOCK_MONOTONIC, &a.begin);
         a.watch = vw_watch_create(wake, a.platform);
-        watch_files(&a);
+        watch_files(&a, a.session.source_path, &a.session.scene.files);
         char welcome[VW_MESSAGE_MAX];
         vw_words_welcome(a.session.keymap, welcome, sizeof welcome);
         vw_state_say(&a.session.state, "%s", welcome);

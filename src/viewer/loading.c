@@ -23,6 +23,7 @@ void vw_scene_deinit(vw_scene *scene)
 {
     fl_compiled_release(scene->compiled);
     fl_scene_destroy(scene->scene);
+    fl_file_list_deinit(&scene->files);
     *scene = (vw_scene){0};
 }
 

@@ -21,8 +21,9 @@ void vw_loading_destroy(vw_loading *loading);
 /** Ask for the scene at `path`, shorter than VW_PATH_MAX. Never waits. */
 void vw_loading_ask(vw_loading *loading, const char *path);
 
-/** What the newest ended load brought; true once for each. *out_scene is then the caller's, or
- * zeroed when the load failed for what was added to `diags`. `out_path`: VW_PATH_MAX bytes. */
+/** What the newest ended load brought; true once for each. *out_scene is then the caller's; when
+ * the load failed for what was added to `diags` there are at most the files in it. `out_path`:
+ * VW_PATH_MAX bytes. */
 bool vw_loading_take(vw_loading *loading, vw_scene *out_scene, char *out_path, fl_diags *diags);
 
 /** Whether something was asked for and has not been taken. */

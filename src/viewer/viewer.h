@@ -9,6 +9,7 @@
 
 #include "core/firstlight.h"
 #include "io/digest.h"
+#include "io/file_list.h"
 #include "viewer/event.h"
 
 /** A scene ready to render. Zero-initialise. `params.lights` may be borrowed from `scene`. */
@@ -20,15 +21,16 @@ typedef struct vw_scene {
      * saved with. Else empty and 0. */
     char path[VW_PATH_MAX];
     uint32_t samples;
+    fl_file_list files; /**< What it was made from, and what it names and is missing. */
 } vw_scene;
 
 /** Where scenes come from: the program reads, parses and compiles with its options. */
 typedef struct vw_loader {
     void *context;
-    /** Load `path`, which may go afterwards. False after adding an error; *out is then to be left
-     * zeroed. Called on the thread of vw_run or vw_replay_run at the start, by a thread of the
-     * window on reload and when a file is dropped on it, and by the one that measures: two may call
-     * at a time. */
+    /** Load `path`, which may go afterwards, into a zeroed *out. False after adding an error; of
+     * *out there are then at most the files, to be watched for the mistake's end. Called on the
+     * thread of vw_run or vw_replay_run at the start, by a thread of the window on reload and when
+     * a file is dropped on it, and by the one that measures: two may call at a time. */
     bool (*load)(void *context, const char *path, vw_scene *out, fl_diags *diags);
 } vw_loader;
 

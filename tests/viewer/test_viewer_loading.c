@@ -11,6 +11,7 @@
 #include <cmocka.h>
 #include <pthread.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "viewer/loading.h"
 #include "viewer_loader.h"
@@ -118,8 +119,55 @@ static void errors_come_along(void **state)
     assert_null(scene.compiled);
     assert_int_equal(diags.error_count, 1);
     assert_non_null(strstr(diags.items[0].loc.file, "no such scene.txt"));
+    assert_int_equal(scene.files.count, 1);
+    assert_string_equal(scene.files.paths[0], "no such scene.txt");
+    vw_scene_deinit(&scene);
     fl_diags_deinit(&diags);
     vw_loading_destroy(loading);
+}
+
+/* What a scene names and is missing or broken is said with it, so that it can be waited for. */
+static void files_come_along_also_of_broken_scenes(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "firstlight 1\n"
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }\n"
+        "Materials { numMaterials 1 Material { texture not-there.png } }\n"
+        "Group { numObjects 3 MaterialIndex 0\n"
+        "        TriangleMesh { obj_file not-there.obj } TriangleMesh { obj_file broken.obj }\n"
+        "        TriangleMesh { obj_file /not/there.obj } }\n";
+    static const char *const names[] = {"scene.txt", "not-there.png", "not-there.obj", "broken.obj",
+                                        NULL};
+    char folder[] = "firstlight-loading-XXXXXX", path[64], want[64];
+    assert_non_null(mkdtemp(folder));
+    snprintf(path, sizeof path, "%s/broken.obj", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs("v 1 2\n", file);
+    fclose(file);
+    snprintf(want, sizeof want, "%s/scene.txt", folder);
+    file = fopen(want, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    vw_scene scene = {0};
+    fl_diags diags = {0};
+    assert_false(viewer_test_load(NULL, want, &scene, &diags));
+    assert_true(diags.error_count >= 4);
+    assert_null(scene.scene);
+    assert_int_equal(scene.files.count, 5);
+    for (size_t i = 0; names[i]; i++) {
+        snprintf(path, sizeof path, "%s/%s", folder, names[i]);
+        assert_string_equal(scene.files.paths[i], path);
+    }
+    assert_string_equal(scene.files.paths[4], "/not/there.obj");
+    vw_scene_deinit(&scene);
+    fl_diags_deinit(&diags);
+    unlink(want);
+    snprintf(path, sizeof path, "%s/broken.obj", folder);
+    unlink(path);
+    assert_int_equal(rmdir(folder), 0);
 }
 
 /* What is not taken, is being read, or waits for its turn goes when the window does. */
@@ -144,6 +192,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_newest_wish_wins),
         cmocka_unit_test(errors_come_along),
+        cmocka_unit_test(files_come_along_also_of_broken_scenes),
         cmocka_unit_test(closing_in_the_middle_loses_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -18,16 +18,20 @@ static inline bool viewer_test_load(void *context, const char *path, vw_scene *o
 {
     size_t bytes;
     fl_saved_state state = {0};
+    fl_file_list_add(&out->files, path);
     if (fl_saved_state_is_for(path) && !fl_saved_state_load(path, &state, diags))
         return false;
     if (state.scene_path)
         snprintf(out->path, sizeof out->path, "%s", path = state.scene_path);
+    if (state.scene_path)
+        fl_file_list_add(&out->files, path);
+    fl_files files = fl_files_listed(&out->files);
     char *text =
         fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, diags, &bytes);
     fl_parse_options parse = {0};
     fl_compile_options compile = {.quick_above = context ? *(const uint32_t *)context : 0};
     if (text)
-        out->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, diags);
+        out->scene = fl_scene_parse(text, bytes, path, &parse, &files, diags);
     free(text);
     out->compiled = out->scene ? fl_compile(out->scene, &compile, NULL, diags) : NULL;
     if (out->compiled) {
@@ -37,7 +41,7 @@ static inline bool viewer_test_load(void *context, const char *path, vw_scene *o
         out->samples = state.samples;
     } else {
         fl_scene_destroy(out->scene);
-        *out = (vw_scene){0};
+        *out = (vw_scene){.files = out->files};
     }
     fl_saved_state_deinit(&state);
     return out->compiled != NULL;

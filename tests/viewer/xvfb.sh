@@ -172,6 +172,16 @@ sed -i 's/radius 0.7/radios 0.7/' live.txt
 until settle; shoot broken; [ "$(differing reloaded broken | cut -d. -f1)" -gt 20000 ]; do :; done
 cp good.txt live.txt
 expect 'done 16 samples'
+settle
+
+# A scene that names a mesh which is not there yet is read again when the mesh comes.
+shoot before
+sed 's/^\( *\)Sphere.*radius 0.7.*/\1TriangleMesh { obj_file late.obj }/' good.txt >late.txt
+grep -q late.obj late.txt || fail 'the scene was not changed'
+mv late.txt live.txt
+until settle; shoot missing; [ "$(differing before missing | cut -d. -f1)" -gt 20000 ]; do :; done
+printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >late.obj
+expect 'done 16 samples'
 
 xdotool key ctrl+q
 code=0
