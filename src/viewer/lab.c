@@ -8,6 +8,8 @@
 #include <string.h>
 #include <sys/resource.h>
 
+#include "viewer/loading.h"
+
 /* How soon a question that nobody wants any more is noticed. */
 #define WAIT_SECONDS 0.02
 enum { ROUNDS = 2 };
@@ -203,8 +205,7 @@ static bool render_scaled(vw_lab *lab, const vw_lab_question *question, mean *ou
     }
     fl_diags_deinit(&diags);
     fl_compiled_release(compiled);
-    fl_compiled_release(scene.compiled);
-    fl_scene_destroy(scene.scene);
+    vw_scene_deinit(&scene);
     return is_fine;
 }
 

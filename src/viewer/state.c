@@ -63,13 +63,54 @@ static void fit_picture(vw_state *state, uint32_t picture_width, uint32_t pictur
         floor(((double)state->height - state->picture_scale * (double)picture_height) / 2.0);
 }
 
+static bool is_same_pose(const fl_camera *a, const fl_camera *b)
+{
+    return is_same_point(a->center, b->center) && is_same_point(a->direction, b->direction) &&
+           is_same_point(a->up, b->up);
+}
+
+static bool is_same_field(const fl_camera *a, const fl_camera *b)
+{
+    return a->projection == b->projection && a->fov_deg == b->fov_deg &&
+           a->ortho_size == b->ortho_size;
+}
+
+static bool is_same_opening(const fl_camera *a, const fl_camera *b)
+{
+    return a->aperture == b->aperture && a->blades == b->blades &&
+           a->blade_rotation_deg == b->blade_rotation_deg;
+}
+
 static bool is_same_camera(const fl_camera *a, const fl_camera *b)
 {
-    return a->projection == b->projection && is_same_point(a->center, b->center) &&
-           is_same_point(a->direction, b->direction) && is_same_point(a->up, b->up) &&
-           a->fov_deg == b->fov_deg && a->ortho_size == b->ortho_size &&
-           a->aperture == b->aperture && a->focus == b->focus && a->blades == b->blades &&
-           a->blade_rotation_deg == b->blade_rotation_deg && a->exposure_ev == b->exposure_ev;
+    return is_same_pose(a, b) && is_same_field(a, b) && is_same_opening(a, b) &&
+           a->focus == b->focus && a->exposure_ev == b->exposure_ev;
+}
+
+/* Part by part: who has only made it brighter sees an angle that is edited in the file. */
+static void rebase_camera(fl_camera *camera, const fl_camera *before, const fl_camera *start)
+{
+    fl_camera own = *camera;
+    *camera = *start;
+    if (!is_same_pose(&own, before)) {
+        camera->center = own.center;
+        camera->direction = own.direction;
+        camera->up = own.up;
+    }
+    if (!is_same_field(&own, before)) {
+        camera->projection = own.projection;
+        camera->fov_deg = own.fov_deg;
+        camera->ortho_size = own.ortho_size;
+    }
+    if (!is_same_opening(&own, before)) {
+        camera->aperture = own.aperture;
+        camera->blades = own.blades;
+        camera->blade_rotation_deg = own.blade_rotation_deg;
+    }
+    if (own.focus != before->focus)
+        camera->focus = own.focus;
+    if (own.exposure_ev != before->exposure_ev)
+        camera->exposure_ev = own.exposure_ev;
 }
 
 bool vw_lights_are_same(const vw_look *a, const vw_look *b)
@@ -148,10 +189,9 @@ void vw_look_take_lit_colors(vw_look *look)
 
 bool vw_look_rebase(vw_look *look, const vw_look *before, const vw_look *start)
 {
-    bool is_moved = is_same_camera(&look->camera, &before->camera) &&
-                    !is_same_camera(&before->camera, &start->camera);
-    if (is_same_camera(&look->camera, &before->camera))
-        look->camera = start->camera;
+    bool is_moved = is_same_pose(&look->camera, &before->camera) &&
+                    !is_same_pose(&before->camera, &start->camera);
+    rebase_camera(&look->camera, &before->camera, &start->camera);
     if (look->depth_limit == before->depth_limit)
         look->depth_limit = start->depth_limit;
     if (look->light_samples == before->light_samples)

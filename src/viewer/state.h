@@ -218,7 +218,8 @@ void vw_look_take_lights(vw_look *look, const vw_look *from);
 void vw_look_take_lit_colors(vw_look *look);
 
 /** `before` was the scene's start and `start` is now: what the look had of the one becomes that of
- * the other, what was changed stays; lights only while they are as many. True: another camera. */
+ * the other, what was changed stays, of the camera part by part; lights only while they are as
+ * many. True: the camera stands elsewhere. */
 bool vw_look_rebase(vw_look *look, const vw_look *before, const vw_look *start);
 
 /** Whether both ask for the same picture, exposure and limits included. */

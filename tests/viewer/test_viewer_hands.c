@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Two hands at once, and what stays put while they move: speed keys with the mouse, a region's end,
- * a focus that was pulled, a pivot that is near, a light that is far out of bounds.
+ * a focus that was pulled, a pivot that is near, a light that is far out of bounds, a scene that is
+ * saved meanwhile.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -166,6 +167,36 @@ static void lights_come_back_from_beyond_their_bounds(void **unused)
     }
 }
 
+/* A scene that is saved with another camera: each part of it that was not changed by hand follows.
+ */
+static void an_edited_scene_changes_what_the_hand_did_not(void **unused)
+{
+    (void)unused;
+    static const char *const commands[] = {"forward", "fov", "aperture", "focus", "exposure"};
+    for (size_t i = 0; i < FL_COUNT_OF(commands); i++) {
+        vw_state state = state_of_test();
+        fl_camera before = state.look.camera;
+        run(&state, commands[i], 1.0, 0.0);
+        fl_camera mine = state.look.camera;
+        fl_params params = {.camera = before, .width = 640, .height = 480};
+        params.camera.center.x = 1.0;
+        params.camera.fov_deg = 20.0;
+        params.camera.aperture = 0.3;
+        params.camera.focus = 9.0;
+        params.camera.exposure_ev = -2.0;
+        vw_state_rebase(&state, &params, NULL, 64);
+        const fl_camera *want[] = {&params.camera, &params.camera, &params.camera, &params.camera,
+                                   &params.camera},
+                        *now = &state.look.camera;
+        want[i] = &mine;
+        assert_memory_equal(&now->center, &want[0]->center, sizeof now->center);
+        assert_true(now->fov_deg == want[1]->fov_deg);
+        assert_true(now->aperture == want[2]->aperture);
+        assert_true(now->focus == want[3]->focus);
+        assert_true(now->exposure_ev == want[4]->exposure_ev);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -174,6 +205,7 @@ int main(void)
         cmocka_unit_test(orbiting_keeps_a_focus_that_was_pulled),
         cmocka_unit_test(forward_never_moves_back),
         cmocka_unit_test(lights_come_back_from_beyond_their_bounds),
+        cmocka_unit_test(an_edited_scene_changes_what_the_hand_did_not),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
