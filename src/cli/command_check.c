@@ -12,9 +12,7 @@
 #include "io/files.h"
 #include "io/image_file.h"
 
-/* Golden pictures: small enough to check in a second, large enough to show every feature. A scene that asks for fewer samples
- * gets no more. */
-enum { GOLDEN_SIDE = 160, GOLDEN_SAMPLES = 16, PATH_BYTES = 4096 };
+enum { PATH_BYTES = 4096 };
 
 typedef struct checker {
     const cli_options *options;
@@ -124,13 +122,10 @@ static void compare(checker *check, const char *path, cli_scene *scene, const cl
 /* Render at the golden size and compare, or write the golden picture. */
 static void check_picture(checker *check, const char *path, cli_scene *scene)
 {
-    const fl_render_block *render = &scene->scene->render;
-    fl_render_limits limits = {.samples = GOLDEN_SAMPLES};
+    fl_render_limits limits = {.samples = cli_golden_samples(&scene->scene->render)};
     cli_picture_plan plan = {.threads = check->options->threads};
     cli_picture picture = {0};
-    if (render->has_samples)
-        limits.samples = fl_min_u32(limits.samples, render->samples);
-    scene->params.width = scene->params.height = GOLDEN_SIDE;
+    scene->params.width = scene->params.height = CLI_GOLDEN_SIDE;
     scene->params.crop_x = scene->params.crop_y = scene->params.crop_w = scene->params.crop_h = 0;
     if (cli_picture_render(scene, &limits, &plan, &picture) && !picture.was_interrupted) {
         if (!cli_has(check->options, CLI_OPT_UPDATE)) {

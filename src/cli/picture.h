@@ -8,6 +8,15 @@
 #include "cli/load.h"
 #include "io/digest.h"
 
+/** Golden pictures: small enough to check in a second, large enough to show every feature. */
+enum { CLI_GOLDEN_SIDE = 160, CLI_GOLDEN_SAMPLES = 16 };
+
+/** Samples of a scene's golden picture: a scene that asks for fewer gets no more. */
+static inline uint32_t cli_golden_samples(const fl_render_block *render)
+{
+    return render->has_samples ? fl_min_u32(CLI_GOLDEN_SAMPLES, render->samples) : CLI_GOLDEN_SAMPLES;
+}
+
 enum { CLI_MAP_COUNT = FL_RENDER_ERROR + 1 }; /**< Of fl_render_map. */
 
 /** A finished (or interrupted) picture. */

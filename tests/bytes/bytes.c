@@ -8,17 +8,22 @@
  *        bytes --all HASHES    every instruction set, structure and number of threads here
  *        bytes                 print the list
  *        bytes --texts FOLDER  write the scenes' texts there: seeds for the fuzzer
- * Exit: 0 all equal, 1 some differ, 2 usage or a scene that does not render, 77 no such
- * instruction set here.
+ *        bytes [--isa NAME] [--threads N] [--accel ...] --gallery FLAT FILMS
+ *                              render the scenes FLAT/NAME.flat (flat.h) to FILMS/NAME.film, whose
+ *                              SHA-256 is that of the golden picture: floats, little endian
+ * Exit: 0 all equal, 1 some differ or have invalid samples, 2 usage or a scene that does not
+ * render, 77 no such instruction set here.
  */
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "bytes/flat.h"
 #include "bytes/scenes.h"
 #include "bytes/world.h"
 
-enum { SCENES_MAX = 64 };
+enum { SCENES_MAX = 64, NAME_BYTES = 256, PATH_BYTES = 4096 };
 
 typedef struct config {
     fl_isa isa;
@@ -29,6 +34,14 @@ typedef struct config {
 typedef struct digest {
     uint64_t film, shown, layers;
 } digest;
+
+/* What a render gave. */
+typedef struct outcome {
+    digest hashes;
+    float *film; /* owned by the caller */
+    size_t film_bytes;
+    uint64_t invalid_samples;
+} outcome;
 
 static const char *const accel_names[] = {"bvh", "octree", "none"};
 
@@ -66,26 +79,24 @@ static void set_params(const test_scene *test, const fl_scene *scene, fl_params 
     params->crop_h = test->crop[3];
 }
 
-static bool hash_render(fl_render *render, const fl_params *params, digest *out)
+static bool take_render(fl_render *render, const fl_params *params, outcome *out)
 {
     size_t pixels = (size_t)params->width * params->height;
-    float *film = malloc(pixels * 3 * sizeof *film);
     uint8_t *shown = malloc(pixels * 4);
     fl_progress progress;
     uint64_t revision = 0;
     fl_tonemap tonemap = {.exposure_ev = params->camera.exposure_ev,
                           .truncates = params->exact.truncate_bytes};
-    bool ok = film && shown && fl_render_mean(render, film, pixels * 3, &progress) &&
+    out->film = malloc(pixels * 3 * sizeof *out->film);
+    bool ok = out->film && shown && fl_render_mean(render, out->film, pixels * 3, &progress) &&
               fl_render_display(render, &revision, &tonemap, shown, pixels * 4, &progress);
     if (ok) {
         pixels = (size_t)progress.width * progress.height;
-        out->film = hash_bytes(film, pixels * 3 * sizeof *film);
-        out->shown = hash_bytes(shown, pixels * 4);
-        if (progress.counts.invalid_samples)
-            fprintf(stderr, "bytes: %llu invalid samples\n",
-                    (unsigned long long)progress.counts.invalid_samples);
+        out->film_bytes = pixels * 3 * sizeof *out->film;
+        out->invalid_samples = progress.counts.invalid_samples;
+        out->hashes.film = hash_bytes(out->film, out->film_bytes);
+        out->hashes.shown = hash_bytes(shown, pixels * 4);
     }
-    free(film);
     free(shown);
     return ok;
 }
@@ -113,7 +124,7 @@ static bool hash_layers(fl_compiled *compiled, const fl_params *params, fl_diags
 }
 
 static bool run_compiled(const test_scene *test, const config *how, const fl_scene *scene,
-                         fl_compiled *compiled, fl_diags *diags, digest *out)
+                         fl_compiled *compiled, fl_diags *diags, outcome *out)
 {
     fl_params params;
     set_params(test, scene, &params);
@@ -123,17 +134,21 @@ static bool run_compiled(const test_scene *test, const config *how, const fl_sce
     fl_render_set_limits(render, &(fl_render_limits){.samples = test->samples});
     bool ok = fl_params_check(&params, diags) &&
               fl_render_restart(render, compiled, &params, diags) && fl_render_wait(render, -1.0) &&
-              hash_render(render, &params, out) && hash_layers(compiled, &params, diags, out);
+              take_render(render, &params, out) &&
+              hash_layers(compiled, &params, diags, &out->hashes);
     fl_render_destroy(render);
     return ok;
 }
 
-static bool run_scene(const test_scene *test, const config *how, digest *out)
+/* False after saying why; there is no film to free then. */
+static bool run_scene(const test_scene *test, const fl_files *files, const config *how,
+                      outcome *out)
 {
+    *out = (outcome){0};
     fl_diags diags = {0};
     fl_compiled *compiled = NULL;
     fl_scene *scene = fl_scene_parse(test->text, strlen(test->text), test->name,
-                                     &(fl_parse_options){0}, &test_world, &diags);
+                                     &(fl_parse_options){0}, files, &diags);
     fl_pool *pool = scene ? fl_pool_create(how->threads, &diags) : NULL;
     if (pool)
         compiled = fl_compile(
@@ -141,8 +156,12 @@ static bool run_scene(const test_scene *test, const config *how, digest *out)
             pool, &diags);
     fl_pool_destroy(pool);
     bool ok = compiled && run_compiled(test, how, scene, compiled, &diags, out);
-    if (!ok)
+    if (!ok) {
         print_diags(test->name, &diags);
+        free(out->film);
+    } else if (out->invalid_samples) {
+        printf("%s: %llu invalid samples\n", test->name, (unsigned long long)out->invalid_samples);
+    }
     fl_compiled_release(compiled);
     fl_scene_destroy(scene);
     fl_diags_deinit(&diags);
@@ -173,11 +192,14 @@ static bool run_config(const config *how, const char *only, const digest *list, 
 {
     for (uint32_t i = 0; i < test_scene_count; i++) {
         const test_scene *test = &test_scenes[i];
-        digest got;
+        outcome out;
         if (only && strcmp(only, test->name) != 0)
             continue;
-        if (!run_scene(test, how, &got))
+        if (!run_scene(test, &test_world, how, &out))
             return false;
+        free(out.film);
+        digest got = out.hashes;
+        *all += out.invalid_samples > 0; /* and none equal */
         if (!list) {
             printf("%-12s %016llx %016llx %016llx\n", test->name, (unsigned long long)got.film,
                    (unsigned long long)got.shown, (unsigned long long)got.layers);
@@ -212,10 +234,75 @@ static bool run_all(const digest *list, uint32_t *equal, uint32_t *all)
     return true;
 }
 
+static bool save_film(const outcome *out, const char *folder, const char *name)
+{
+    char path[PATH_BYTES];
+    snprintf(path, sizeof path, "%s/%s.film", folder, name);
+    FILE *file = fopen(path, "wb");
+    bool ok = file && fwrite(out->film, out->film_bytes, 1, file) == 1;
+    if (!file || fclose(file) != 0 || !ok) {
+        fprintf(stderr, "bytes: cannot write %s\n", path);
+        return false;
+    }
+    return true;
+}
+
+/* Render a scene of the gallery; its exit code. */
+static int run_flat(const config *how, const char *folder, const char *name, const char *films)
+{
+    char path[PATH_BYTES];
+    snprintf(path, sizeof path, "%s/%s.flat", folder, name);
+    flat_scene flat;
+    if (!flat_read(&flat, path)) {
+        fprintf(stderr, "bytes: cannot read %s\n", path);
+        return 2;
+    }
+    test_scene test = {.name = name,
+                       .text = flat.text,
+                       .width = flat.width,
+                       .height = flat.height,
+                       .samples = flat.samples};
+    fl_files files = flat_files(&flat);
+    outcome out;
+    int code = 2;
+    if (run_scene(&test, &files, how, &out)) {
+        if (save_film(&out, films, name))
+            code = out.invalid_samples > 0;
+        free(out.film);
+    }
+    flat_close(&flat);
+    return code;
+}
+
+static int is_flat(const struct dirent *entry)
+{
+    const char *dot = strchr(entry->d_name, '.');
+    return dot && strcmp(dot, ".flat") == 0;
+}
+
+static int run_gallery(const config *how, const char *only, const char *folder, const char *films)
+{
+    struct dirent **entries;
+    int count = scandir(folder, &entries, is_flat, alphasort), worst = count > 0 ? 0 : 2;
+    for (int i = 0; i < count; i++) {
+        char name[NAME_BYTES];
+        snprintf(name, sizeof name, "%.*s", (int)strcspn(entries[i]->d_name, "."),
+                 entries[i]->d_name);
+        free(entries[i]);
+        if (only && strcmp(only, name) != 0)
+            continue;
+        int code = run_flat(how, folder, name, films);
+        worst = code > worst ? code : worst;
+    }
+    if (count >= 0)
+        free(entries);
+    return worst;
+}
+
 static int write_texts(const char *folder)
 {
     for (uint32_t i = 0; i < test_scene_count; i++) {
-        char path[4096];
+        char path[PATH_BYTES];
         snprintf(path, sizeof path, "%s/%s.scene", folder, test_scenes[i].name);
         FILE *file = fopen(path, "w");
         bool ok = file && fputs(test_scenes[i].text, file) >= 0;
@@ -231,7 +318,7 @@ static int usage(void)
 {
     fputs(
         "usage: bytes [--all] [--isa NAME] [--threads N] [--accel bvh|octree|none] [--scene NAME] "
-        "[HASHES]\n",
+        "[--gallery FLAT FILMS | HASHES]\n",
         stderr);
     return 2;
 }
@@ -239,7 +326,7 @@ static int usage(void)
 int main(int argc, char **argv)
 {
     config how = {fl_cpu_best_isa(), FL_ACCEL_BVH, 2};
-    const char *path = NULL, *only = NULL;
+    const char *path = NULL, *only = NULL, *flat = NULL, *films = NULL;
     bool is_all = false;
     for (int i = 1; i < argc; i++) {
         const char *word = argv[i], *value = i + 1 < argc ? argv[i + 1] : "";
@@ -249,7 +336,10 @@ int main(int argc, char **argv)
             path = word;
         else if (strcmp(word, "--texts") == 0)
             return write_texts(value);
-        else if (strcmp(word, "--isa") == 0 && fl_isa_find(value, &how.isa))
+        else if (strcmp(word, "--gallery") == 0 && i + 2 < argc) {
+            flat = argv[++i];
+            films = argv[++i];
+        } else if (strcmp(word, "--isa") == 0 && fl_isa_find(value, &how.isa))
             i++;
         else if (strcmp(word, "--threads") == 0 && (how.threads = (uint32_t)atoi(value)) > 0)
             i++;
@@ -262,6 +352,8 @@ int main(int argc, char **argv)
     }
     if (!fl_cpu_has(how.isa))
         return 77;
+    if (flat)
+        return run_gallery(&how, only, flat, films);
     digest list[SCENES_MAX] = {{0}};
     uint32_t equal = 0, all = 0;
     if ((is_all && !path) || (path && !read_list(path, list)))
