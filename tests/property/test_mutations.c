@@ -16,6 +16,7 @@
 #include "core/format.h"
 #include "core/grammar.h"
 #include "support/scene_dump.h"
+#include "support/seed.h"
 
 enum { TEXT_BYTES = 4096, ROUNDS = 20000 };
 
@@ -155,8 +156,7 @@ static bool check(const char *text, size_t bytes, const fl_parse_options *option
 static void test_mutations(void **state)
 {
     (void)state;
-    random_state = 20240;
-    print_message("seed %u, %d rounds\n", random_state, ROUNDS);
+    random_state = test_seed(20240);
     unsigned scenes = 0;
     for (int round = 0; round < ROUNDS; round++) {
         char text[TEXT_BYTES];

@@ -6,6 +6,7 @@
 #include "../kernel/pipeline_world.h"
 
 #include "core/sampler.h"
+#include "support/seed.h"
 
 typedef struct oracle {
     const world *w;
@@ -216,8 +217,7 @@ static void random_scenes_match_the_reference(void **state)
 {
     (void)state;
     static picture got;
-    uint32_t seed = 20;
-    print_message("seed %u\n", seed);
+    uint32_t seed = test_seed(20);
     for (int scene = 0; scene < 60; scene++) {
         world w;
         random_world(&w, &seed);

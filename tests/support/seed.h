@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Where the random numbers of a test begin. Tests run with the seed they were written with, so that
+ * a failure comes back; FL_TEST_SEED=N in the environment makes the same test a search.
+ */
+#ifndef TEST_SEED_H
+#define TEST_SEED_H
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/** FL_TEST_SEED, or `standard`; printed, for whoever has to repeat it. */
+static inline uint32_t test_seed(uint32_t standard)
+{
+    const char *given = getenv("FL_TEST_SEED");
+    uint32_t seed = given ? (uint32_t)strtoul(given, NULL, 0) : standard;
+    printf("FL_TEST_SEED=%u\n", seed);
+    return seed;
+}
+
+#endif
