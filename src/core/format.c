@@ -192,6 +192,8 @@ static void put_meaning(printer *p, const fl_node *node, const fl_material *mate
     const fl_node *bump = fl_node_key(node, FL_KEY_BUMP);
     put_color(p, "diffuseColor", material->diffuse);
     put_color_if(p, "specularColor", material->specular, 0.0);
+    if (material->has_ambient) /* of the material it stands in for */
+        put_color(p, "ambient", material->ambient);
     if (material->shininess != 0.0)
         put_key(p, "shininess", &material->shininess, 1);
     put_color_if(p, "reflect", material->reflect, 0.0);
