@@ -94,7 +94,7 @@ const cli_option cli_option_table[CLI_OPT_COUNT] = {
     [CLI_OPT_NOISE_SPLIT] = {"noise-split", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_RENDER) | BIT(CLI_INFO),
                              "measure where the noise comes from (edges, lens, each light) and which knob helps"},
     [CLI_OPT_ADAPTIVE] = {"adaptive", 0, NULL, CLI_KIND_CHOICE, AT(adaptive), 0, 0, switch_names,
-                          BIT(CLI_VIEW) | BIT(CLI_RENDER),
+                          BIT(CLI_VIEW) | BIT(CLI_RENDER) | BIT(CLI_REPLAY),
                           "on: more samples where the noise is, the same number in the mean (default off)"},
     [CLI_OPT_UPDATE] = {"update", 0, NULL, CLI_KIND_FLAG, 0, 0, 0, NULL, BIT(CLI_CHECK),
                         "write the golden pictures instead of comparing"},

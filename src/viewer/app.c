@@ -173,7 +173,7 @@ static void take_loaded(app *a)
         a->dropped[0] = 0;
     if (is_read) {
         vw_session_clear_error(&a->session); /* Before its bookmarks, which may have errors too. */
-        is_read = vw_session_adopt(&a->session, path, &scene, &a->diags);
+        is_read = vw_session_adopt(&a->session, path, &scene, !is_dropped, &a->diags);
     } else {
         watch_files(a, path, &scene.files);
         vw_scene_deinit(&scene);
@@ -249,31 +249,43 @@ static void order_snapshot(app *a)
     a->wants_refresh = true;
 }
 
-static void save_snapshot(app *a)
+static bool save_snapshot(app *a, fl_diags *diags)
 {
     fl_progress progress;
-    a->needs_draw = true;
-    if (!vw_session_save_ordered(&a->session, a->snapshot, &progress, &a->diags)) {
-        show_error(a);
-        return;
-    }
+    if (!vw_session_save_ordered(&a->session, a->snapshot, &progress, diags))
+        return false;
     uint32_t samples = vw_words_samples(&progress);
     vw_state_say(&a->session.state, "saved %s, %u samples", a->snapshot, samples);
     if (!a->options->is_quiet) {
         printf("saved %s %u samples\n", a->snapshot, samples);
         fflush(stdout);
     }
+    return true;
 }
 
 /* An ordered snapshot is there, or will never be. */
 static void save_if_whole(app *a)
 {
     if (vw_session_has_ordered(&a->session)) {
-        save_snapshot(a);
+        if (!save_snapshot(a, &a->diags))
+            show_error(a);
+        a->needs_draw = true;
     } else if (a->session.exact_samples && a->session.progress.state == FL_RENDER_FAILED) {
         vw_session_end_order(&a->session);
         vw_state_say(&a->session.state, "%s was not saved: out of memory", a->snapshot);
     }
+}
+
+/* Who orders a snapshot and leaves has it still. */
+static bool save_at_the_end(app *a, fl_diags *diags)
+{
+    vw_session *session = &a->session;
+    if (!session->exact_samples || !a->has_quit)
+        return true;
+    vw_session_hurry_order(session);
+    if (!fl_render_wait(session->render, -1.0))
+        return fl_out_of_memory(diags, "the snapshot");
+    return save_snapshot(a, diags);
 }
 
 /* Do what a command asked for. `is_resize`: restart only when the hand rests. */
@@ -522,7 +534,7 @@ bool vw_run(const vw_options *options, fl_diags *diags)
         vw_state_say(&a.session.state, "%s", welcome);
         a.session.state.message_until_ms = WELCOME_MS;
         a.loading = vw_loading_create(&options->loader, wake, a.platform, diags);
-        is_fine = a.loading && loop(&a, diags);
+        is_fine = a.loading && loop(&a, diags) && save_at_the_end(&a, diags);
         is_fine &= close_record(&a, diags);
     }
     /* The threads go first: they wake the platform. */

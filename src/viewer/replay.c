@@ -160,17 +160,12 @@ static bool picture_changed(replay *r, double begin_s)
     return restart(r, VW_LOG_SAMPLES_MAX) && watch(r, begin_s, 1);
 }
 
-static bool load(replay *r, const char *path)
-{
-    /* A file that is not a scene shows an error in the window; in a log it is a mistake. */
-    return vw_session_load(&r->session, path, r->diags);
-}
-
 static bool apply(replay *r, vw_dirty dirty, double begin_s)
 {
     dirty = vw_session_answer(&r->session, dirty, r->diags);
     bool needs_restart = (dirty & (VW_DIRTY_CAMERA | VW_DIRTY_SCENE)) != 0;
-    if ((dirty & VW_DIRTY_SCENE) && !load(r, r->session.source_path))
+    /* A file that is not a scene shows an error in the window; in a log it is a mistake. */
+    if ((dirty & VW_DIRTY_SCENE) && !vw_session_reload(&r->session, r->diags))
         return false;
     if (dirty & VW_DIRTY_TONEMAP)
         r->session.revision = 0;
@@ -209,7 +204,7 @@ static bool run_event(replay *r, const vw_log_entry *entry)
         return false;
     vw_dirty dirty = vw_input_event(&r->session.input, &r->session.state, event, entry->ms);
     if (event->kind == VW_EVENT_DROP) {
-        if (!load(r, event->path))
+        if (!vw_session_load(&r->session, event->path, r->diags))
             return false;
         dirty = (vw_dirty)(dirty | VW_DIRTY_CAMERA);
     }

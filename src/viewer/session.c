@@ -301,19 +301,31 @@ void vw_session_set_limits(vw_session *session)
     }
 }
 
-bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
+static bool load(vw_session *session, const char *path, bool is_again, fl_diags *diags)
 {
     vw_scene scene = {0};
     if (!session->options->loader.load(session->options->loader.context, path, &scene, diags)) {
         vw_scene_deinit(&scene);
         return false;
     }
-    return vw_session_adopt(session, path, &scene, diags);
+    return vw_session_adopt(session, path, &scene, is_again, diags);
 }
 
-bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, fl_diags *diags)
+bool vw_session_load(vw_session *session, const char *path, fl_diags *diags)
 {
-    bool is_same = strcmp(path, session->source_path) == 0;
+    return load(session, path, false, diags);
+}
+
+bool vw_session_reload(vw_session *session, fl_diags *diags)
+{
+    return load(session, session->source_path, true, diags);
+}
+
+bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, bool is_again,
+                      fl_diags *diags)
+{
+    /* A picture that is opened by hand is where it was taken, be it open already. */
+    bool is_same = strcmp(path, session->source_path) == 0 && (is_again || !scene->path[0]);
     if (!set_paths(session, path, scene, diags)) {
         vw_scene_deinit(scene);
         return false;

@@ -76,13 +76,16 @@ bool vw_session_is_asked(const vw_session *session);
 /** Tell the render when to stop and whether to pause. */
 void vw_session_set_limits(vw_session *session);
 
-/** Read a scene or saved picture, keeping the look (path is source_path) or not (another). False:
- * the last good scene stays, `diags` says why. Needs a restart afterwards. */
+/** Open a scene, keeping the look if it is the one that is open, or a saved picture. False: the
+ * last good scene stays, `diags` says why. Needs a restart afterwards. */
 bool vw_session_load(vw_session *session, const char *path, fl_diags *diags);
+/** Read what is open again, keeping the look. */
+bool vw_session_reload(vw_session *session, fl_diags *diags);
 
-/** The second half of that: take over a scene that was read from `path`; in any case what it holds
- * is the session's. */
-bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, fl_diags *diags);
+/** The second half of either: take over a scene that was read from `path`; in any case what it
+ * holds is the session's. `is_again`: it is read again, not opened by hand. */
+bool vw_session_adopt(vw_session *session, const char *path, vw_scene *scene, bool is_again,
+                      fl_diags *diags);
 
 /** Do what the bits of an input ask of a session (picks, undo, bookmarks, the pin) and note the
  * step for undo. Returns the bits with what that made stale; without CAMERA when the picture is
@@ -133,7 +136,8 @@ bool vw_session_board(vw_session *session, vw_board *out);
 bool vw_session_save(const vw_session *session, const char *path, const float *rgb,
                      const fl_progress *progress, fl_diags *diags);
 
-/** Linear means as they are now, from malloc; NULL after adding an error. */
+/** Linear means as they are now, from malloc; NULL after adding an error. Of uneven samples the
+ * mean number is then the limit that makes the same film again, which it is near to. */
 float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags *diags);
 
 /** Order a snapshot of the state as it is, which must be that of the latest restart: what has begun

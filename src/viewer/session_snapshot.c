@@ -27,6 +27,9 @@ float *vw_session_mean(vw_session *session, fl_progress *out_progress, fl_diags 
             fl_environment_error(diags, "there is no picture yet");
         return NULL;
     }
+    bool is_exact = session->exact_samples > 0 && out_progress->state == FL_RENDER_DONE;
+    if (is_exact && out_progress->is_adaptive)
+        out_progress->mean_samples = session->exact_samples;
     return rgb;
 }
 

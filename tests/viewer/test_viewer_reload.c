@@ -25,8 +25,7 @@ static void write_scene(uint32_t lights, const char *color, const char *center, 
 static void read_again(vw_session *session)
 {
     fl_diags diags = {0};
-    if (!vw_session_load(session, session->source_path, &diags) ||
-        !vw_session_restart(session, &diags))
+    if (!vw_session_reload(session, &diags) || !vw_session_restart(session, &diags))
         fail_msg("%s", diags.items[0].message);
 }
 
@@ -170,6 +169,11 @@ static void an_opened_picture_stays_where_it_was_taken(void **unused)
     fl_params params;
     vw_state_params(&session.state, &session.scene.params, &params);
     assert_int_equal(params.width, 40);
+    /* Opened by hand once more it is where it was taken, whatever was done. */
+    tap(&session, GLFW_KEY_D, 0, 3000);
+    assert_false(vw_look_is_same(&before, &session.state.look));
+    assert_true(vw_session_load(&session, picture, &diags));
+    assert_true(vw_look_is_same(&before, &session.state.look));
     /* The scene itself is another thing to open: its own camera, and the usual number of samples.
      */
     assert_true(vw_session_load(&session, scene, &diags));

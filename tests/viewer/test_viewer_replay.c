@@ -116,6 +116,35 @@ static void history_leaves_no_trace(void **unused)
     vw_replay_report_deinit(&still);
 }
 
+static bool load_adaptive(void *context, const char *path, vw_scene *out, fl_diags *diags)
+{
+    bool is_loaded = viewer_test_load(context, path, out, diags);
+    out->params.is_adaptive = true;
+    return is_loaded;
+}
+
+/* A snapshot on the way changes nothing of a later one, wherever the samples went till then. */
+static void uneven_samples_leave_no_trace_either(void **unused)
+{
+    (void)unused;
+    vw_replay_report reports[2];
+    vw_options options = viewer_test_options();
+    options.loader.load = load_adaptive;
+    for (int i = 0; i < 2; i++) {
+        char path[256];
+        fl_diags diags = {0};
+        path_in_folder("a.log", path);
+        write_log(i ? "1 snapshot %/still.exr 48\n"
+                    : "1 snapshot %/moved.exr 20\n2 snapshot %/still.exr 48\n");
+        assert_true(vw_replay_run(&options, path, false, &reports[i], &diags));
+    }
+    assert_int_equal(reports[0].snapshots[0].samples, 20);
+    assert_int_equal(reports[0].snapshots[1].samples, 48);
+    assert_string_equal(reports[0].snapshots[1].film_sha256, reports[1].snapshots[0].film_sha256);
+    for (int i = 0; i < 2; i++)
+        vw_replay_report_deinit(&reports[i]);
+}
+
 static void expect_failure(const char *lines, const char *message)
 {
     vw_replay_report report;
@@ -272,6 +301,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(replays_give_the_same_bytes),
         cmocka_unit_test(history_leaves_no_trace),
+        cmocka_unit_test(uneven_samples_leave_no_trace_either),
         cmocka_unit_test(failures_are_said),
         cmocka_unit_test(quitting_in_the_middle_is_clean),
         cmocka_unit_test(a_thousand_restarts_end_in_the_same_film),

@@ -183,7 +183,9 @@ until settle; shoot missing; [ "$(differing before missing | cut -d. -f1)" -gt 2
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >late.obj
 expect 'done 16 samples'
 
-xdotool key ctrl+q
+# Who asks for a snapshot and leaves has it still.
+xdotool key d F12 ctrl+q
+expect 'saved firstlight-003.png '
 code=0
 wait "$viewer" || code=$?
 viewer=
