@@ -8,7 +8,8 @@ static vw_moment moment_of(const vw_state *state)
     return (vw_moment){.look = state->look,
                        .mode = state->mode,
                        .pivot = state->pivot,
-                       .saved_aperture = state->saved_aperture};
+                       .saved_aperture = state->saved_aperture,
+                       .speed = {state->speed, state->speed}};
 }
 
 static bool is_same_moment(const vw_moment *a, const vw_moment *b)
@@ -29,6 +30,7 @@ void vw_history_begin(vw_history *history, const vw_state *state, bool forgets)
     if (forgets)
         history->past_count = history->future_count = 0;
     history->now = moment_of(state);
+    history->speed = state->speed;
     history->cause = NULL;
 }
 
@@ -50,11 +52,15 @@ void vw_history_note(vw_history *history, const vw_state *state, const vw_comman
                      bool is_gesture)
 {
     vw_moment now = moment_of(state);
+    now.speed[0] = history->speed;
+    history->speed = state->speed;
     if (is_same_moment(&now, &history->now))
         return;
     bool goes_on = is_gesture && cause && cause == history->cause &&
                    state->now_ms < history->changed_ms + VW_HISTORY_QUIET_MS;
-    if (!goes_on)
+    if (goes_on)
+        now.speed[0] = history->now.speed[0];
+    else
         push(history->past, &history->past_count, &history->now);
     history->future_count = 0;
     history->now = now;
@@ -62,16 +68,25 @@ void vw_history_note(vw_history *history, const vw_state *state, const vw_comman
     history->changed_ms = state->now_ms;
 }
 
-static vw_dirty go(vw_history *history, vw_state *state, vw_moment *from, uint32_t *from_count,
-                   vw_moment *to, uint32_t *to_count, const char *what)
+static vw_dirty go(vw_history *history, vw_state *state, bool is_undo)
 {
+    vw_moment *from = is_undo ? history->past : history->future;
+    uint32_t *from_count = is_undo ? &history->past_count : &history->future_count;
+    const char *what = is_undo ? "undo" : "redo";
     while (*from_count > 0 && is_same_moment(&from[*from_count - 1], &history->now))
         --*from_count; /* A scene that was read again made it the same. */
     if (*from_count == 0) {
         vw_state_say(state, "nothing to %s", what);
         return VW_DIRTY_WINDOW;
     }
-    push(to, to_count, &history->now);
+    if (is_undo)
+        push(history->future, &history->future_count, &history->now);
+    else
+        push(history->past, &history->past_count, &history->now);
+    const double *speed = is_undo ? history->now.speed : from[*from_count - 1].speed;
+    if (state->speed == speed[is_undo])
+        state->speed = speed[!is_undo];
+    history->speed = state->speed;
     history->now = from[--*from_count];
     history->cause = NULL;
     state->look = history->now.look;
@@ -85,12 +100,10 @@ static vw_dirty go(vw_history *history, vw_state *state, vw_moment *from, uint32
 
 vw_dirty vw_history_undo(vw_history *history, vw_state *state)
 {
-    return go(history, state, history->past, &history->past_count, history->future,
-              &history->future_count, "undo");
+    return go(history, state, true);
 }
 
 vw_dirty vw_history_redo(vw_history *history, vw_state *state)
 {
-    return go(history, state, history->future, &history->future_count, history->past,
-              &history->past_count, "redo");
+    return go(history, state, false);
 }

@@ -18,6 +18,8 @@ typedef struct vw_moment {
     vw_mode mode;
     fl_vec3 pivot;
     double saved_aperture; /**< Comes along: by itself it is no step. */
+    double speed[2]; /**< Before and after the step that led here: what it did to it, as reset does,
+                        goes and comes with it; what a hand did since stays. */
 } vw_moment;
 
 /** Zero-initialise, then vw_history_begin. */
@@ -25,6 +27,7 @@ typedef struct vw_history {
     vw_moment now;
     vw_moment past[VW_HISTORY_MAX], future[VW_HISTORY_MAX]; /**< The nearest last. */
     uint32_t past_count, future_count;
+    double speed;            /**< When the last input had been noted. */
     const vw_command *cause; /**< Of the gesture under way; NULL: none. */
     uint64_t changed_ms;
 } vw_history;

@@ -169,7 +169,7 @@ static void what_is_rendered_is_not_begun_again(void **unused)
     vw_session_close(&session);
 }
 
-static void the_lens_that_reset_forgets_comes_back(void **unused)
+static void what_reset_forgets_comes_back(void **unused)
 {
     (void)unused;
     vw_options options = viewer_test_options();
@@ -178,9 +178,20 @@ static void the_lens_that_reset_forgets_comes_back(void **unused)
     tap(&session, GLFW_KEY_RIGHT_BRACKET, 0, 1000);
     double aperture = session.state.look.camera.aperture;
     tap(&session, GLFW_KEY_O, 0, 2000);
+    tap(&session, GLFW_KEY_EQUAL, 0, 2500);
     tap(&session, GLFW_KEY_R, 0, 3000);
+    assert_true(session.state.speed == 1.0);
     tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 4000);
-    tap(&session, GLFW_KEY_O, 0, 5000);
+    assert_true(session.state.speed == 2.0);
+    tap(&session, GLFW_KEY_Y, GLFW_MOD_CONTROL, 5000);
+    assert_true(session.state.speed == 1.0);
+    /* A speed that was set since is not taken away. */
+    tap(&session, GLFW_KEY_MINUS, 0, 6000);
+    for (uint64_t i = 0; i < 2; i++)
+        tap(&session, GLFW_KEY_Z, GLFW_MOD_CONTROL, 7000 + i);
+    assert_true(session.state.speed == 0.5);
+    tap(&session, GLFW_KEY_Y, GLFW_MOD_CONTROL, 8000);
+    tap(&session, GLFW_KEY_O, 0, 9000);
     assert_true(session.state.look.camera.aperture == aperture);
     vw_session_close(&session);
 }
@@ -561,7 +572,7 @@ int main(void)
         cmocka_unit_test(flying_and_looking_is_one_step),
         cmocka_unit_test(a_rack_is_one_step),
         cmocka_unit_test(what_is_rendered_is_not_begun_again),
-        cmocka_unit_test(the_lens_that_reset_forgets_comes_back),
+        cmocka_unit_test(what_reset_forgets_comes_back),
         cmocka_unit_test(bookmarks_stay_beside_the_scene),
         cmocka_unit_test(storing_a_bookmark_replaces_that_alone),
         cmocka_unit_test(views_of_a_reloaded_scene_are_the_new_ones),
