@@ -240,7 +240,8 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
                                   .has_isa = names_isa,
                                   .isa = isa,
                                   .octree_height = options->octree_height,
-                                  .quick_above = out->quick_above};
+                                  .quick_above = out->quick_above,
+                                  .in_double = out->params.precision == FL_PRECISION_DOUBLE};
     out->compiled = fl_compile(out->scene, &compile, pool, out->diags);
     fl_pool_destroy(pool);
     if (!out->compiled)

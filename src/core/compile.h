@@ -78,6 +78,7 @@ typedef struct fl_compile_options {
     /** With FL_ACCEL_BVH, meshes of more triangles than this get a quick hierarchy first, for the caller to refine while
      *  the scene is rendered; 0: none. */
     uint32_t quick_above;
+    bool in_double; /**< The scene will be rendered in double: no warning of what floats cannot place. */
 } fl_compile_options;
 
 /** Where building quickly first begins to pay (docs/performance.md). */

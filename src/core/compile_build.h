@@ -25,11 +25,16 @@ fl_affine fl_compile_transform(const fl_compiler *c, const fl_object *object);
 fl_box fl_compile_object_bounds(const fl_compiler *c, const fl_object *object);
 
 /** Set geometry.origin and extent from all bounded objects. False after a located error: a
- * coordinate too large. */
+ * coordinate too large. Adds a located warning when objects are so small, or so far from the origin,
+ * that floats cannot place them well, unless options->in_double. */
 bool fl_compile_origin(fl_compiler *c);
 
 /** A multiple of a power of two near the middle of `box`; 0 when 0 is near enough. */
 fl_vec3 fl_compile_box_origin(fl_box box);
+
+/** Where vertices without a transform count from: geometry.origin, where rays meet them as they are;
+ * a point near `box` when floats could not tell them apart there. */
+fl_vec3 fl_compile_vertex_origin(const fl_compiler *c, fl_box box);
 
 /** Spheres, planes, patches, revolutions. */
 bool fl_compile_shapes(fl_compiler *c);

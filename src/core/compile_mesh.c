@@ -134,7 +134,8 @@ static bool store_mesh(fl_compiler *c, const fl_mesh *mesh, const mesh_key *key,
 {
     fl_tri_mesh *out = &c->geometry->meshes[key->stored];
     fl_box box = used_box(mesh);
-    out->origin = key->has_identity_user ? c->geometry->origin : fl_compile_box_origin(box);
+    out->origin =
+        key->has_identity_user ? fl_compile_vertex_origin(c, box) : fl_compile_box_origin(box);
     fl_box local = {fl_v3_sub(box.lo, out->origin), fl_v3_sub(box.hi, out->origin)};
     if (key->normals == FL_NORMALS_FILE && !has_file_normals(mesh))
         return fl_error(c->diags, loc,
@@ -274,7 +275,7 @@ static bool compile_loose(fl_compiler *c, uint32_t count, uint32_t first_object,
         m->face_object[face++] = i;
     }
     bool is_identity = is_identity_object(c, &scene->objects[first_object]);
-    m->origin = is_identity ? g->origin : fl_compile_box_origin(box);
+    m->origin = is_identity ? fl_compile_vertex_origin(c, box) : fl_compile_box_origin(box);
     for (uint32_t f = 0; f < count; f++)
         for (uint32_t k = 0; k < 3; k++) {
             const fl_vec3 *vertex = scene->objects[m->face_object[f]].as.triangle.vertex;

@@ -4,6 +4,15 @@
  */
 #include "core/compile_build.h"
 
+/* An object that is narrower than this many steps of the floats where it lies is shown roughly. Of
+ * 1,728 pixels of a scene whose smallest object has ten thousand steps 36 are off by a 256th, of
+ * one with a thousand 398, with a hundred 738. The smallest object of 969 scenes that people wrote
+ * has 207,000 steps. */
+#define STEPS_SHOWN_WELL 8192.0
+/* Vertices are rounded where they are stored: those of a mesh with fewer steps count from a point
+ * of their own, and rays take the way through a transform. */
+#define STEPS_STORED_WELL 65536.0
+
 fl_affine fl_compile_transform(const fl_compiler *c, const fl_object *object)
 {
     if (object->transform == FL_NONE)
@@ -123,9 +132,63 @@ fl_vec3 fl_compile_box_origin(fl_box box)
                  nearest_multiple(middle.z, step));
 }
 
+static double box_size(fl_box box)
+{
+    return fl_v3_max_abs(fl_v3_sub(box.hi, box.lo));
+}
+
+/* How far floats are apart at a coordinate, at most. */
+static double float_step(double coordinate)
+{
+    return 2.0 * FL_EPSILON * coordinate;
+}
+
+/* From the geometry's origin to what of the box is farthest from it, along an axis. */
+static double reach(const fl_compiler *c, fl_box box)
+{
+    return box_largest(
+        (fl_box){fl_v3_sub(box.lo, c->geometry->origin), fl_v3_sub(box.hi, c->geometry->origin)});
+}
+
+/* Objects that lie so far from the middle of the scene that floats cannot place them well: one
+ * warning, at the worst of them. Their boxes are asked for again only where the smallest object and
+ * the whole scene say that there may be any. */
+static void warn_of_floats(fl_compiler *c, double smallest)
+{
+    double fewest = STEPS_SHOWN_WELL;
+    const fl_object *worst = NULL;
+    uint32_t count = 0;
+    if (c->options->in_double || smallest >= STEPS_SHOWN_WELL * float_step(c->geometry->extent))
+        return;
+    for (uint32_t i = 0; i < c->scene->object_count; i++) {
+        const fl_object *object = &c->scene->objects[i];
+        fl_box box = fl_compile_object_bounds(c, object);
+        if (fl_box_is_empty(box) || !(box_size(box) > 0.0))
+            continue;
+        double steps = box_size(box) / float_step(reach(c, box));
+        count += steps < STEPS_SHOWN_WELL ? 1 : 0;
+        worst = steps < fewest ? object : worst;
+        fewest = fl_min(steps, fewest);
+    }
+    if (worst)
+        fl_warning(c->diags, worst->loc,
+                   "%u object%s too small for floats so far from the middle of the scene, this one "
+                   "%.3g steps of a float wide: --precision double renders it right%s",
+                   (unsigned)count, count == 1 ? " is" : "s are", fewest,
+                   worst->kind == FL_OBJECT_TRIANGLE ? " as part of a TriangleMesh" : "");
+}
+
+fl_vec3 fl_compile_vertex_origin(const fl_compiler *c, fl_box box)
+{
+    if (box_size(box) >= STEPS_STORED_WELL * float_step(reach(c, box)))
+        return c->geometry->origin;
+    return fl_compile_box_origin(box);
+}
+
 bool fl_compile_origin(fl_compiler *c)
 {
     fl_box all = fl_box_empty();
+    double smallest = HUGE_VAL;
     for (uint32_t i = 0; i < c->scene->object_count; i++) {
         fl_box box = fl_compile_object_bounds(c, &c->scene->objects[i]);
         if (fl_box_is_empty(box))
@@ -133,6 +196,8 @@ bool fl_compile_origin(fl_compiler *c)
         if (!fl_compile_check_box(c, box, c->scene->objects[i].loc))
             return false;
         all = fl_box_union(all, box);
+        if (box_size(box) > 0.0)
+            smallest = fl_min(box_size(box), smallest);
     }
     c->geometry->origin = fl_compile_box_origin(all);
     c->geometry->extent = 1.0;
@@ -142,6 +207,7 @@ bool fl_compile_origin(fl_compiler *c)
         double largest = box_largest(local);
         c->geometry->extent = largest > 0.0 ? largest : 1.0;
     }
+    warn_of_floats(c, smallest);
     return true;
 }
 

@@ -59,7 +59,11 @@ static void other_scales_and_places_differ_by_rounding(void **state)
     static const struct {
         double scale;
         fl_vec3 offset;
-    } maps[] = {{1e-6, {0, 0, 0}}, {1e6, {0, 0, 0}}, {3.0, {0, 0, 0}}, {1.0, {1000, -2000, 500}}};
+    } maps[] = {{1e-6, {0, 0, 0}},
+                {1e6, {0, 0, 0}},
+                {3.0, {0, 0, 0}},
+                {1.0, {1000, -2000, 500}},
+                {1.0, {1e7, -2e7, 5e6}}};
     (void)state;
     for (uint32_t i = 0; i < test_scene_count; i++) {
         film plain, other;
@@ -126,6 +130,93 @@ static void nonsense_is_refused(void **state)
     fl_scene_destroy(scene);
 }
 
+/* A ball of `radius` at x, and something as far on the other side; how many warnings. */
+static uint32_t warnings(double x, double radius, bool in_double, const char *expected)
+{
+    char text[512];
+    fl_diags diags = {0};
+    snprintf(text, sizeof text,
+             "firstlight 1\nMaterials { Material { } }\nGroup { MaterialIndex 0\n"
+             "Sphere { center %.17g 0 0 radius %.17g }\n"
+             "Sphere { center -%.17g 0 0 radius %.17g } }\n",
+             x, radius, x, 0.1 * x);
+    fl_scene *scene = film_parse(text, "far");
+    assert_non_null(scene);
+    fl_compiled *compiled =
+        fl_compile(scene, &(fl_compile_options){.in_double = in_double}, NULL, &diags);
+    assert_non_null(compiled);
+    uint32_t count = diags.warning_count;
+    assert_int_equal(diags.count, count);
+    if (count > 0) {
+        assert_non_null(strstr(diags.items[0].message, expected));
+        assert_non_null(strstr(diags.items[0].message, "--precision double"));
+        assert_int_equal(diags.items[0].loc.line, 4);
+    }
+    fl_compiled_release(compiled);
+    fl_scene_destroy(scene);
+    fl_diags_deinit(&diags);
+    return count;
+}
+
+/* An object of 8,192 steps of a float is shown well: the ball ends at 2^10, where they are 2^-13.
+ */
+static void what_floats_cannot_place_is_warned_of(void **state)
+{
+    (void)state;
+    assert_int_equal(warnings(1023.5, 0.5, false, ""), 0);
+    assert_int_equal(warnings(1023.6, 0.5, false, "1 object is too small"), 1);
+    assert_int_equal(warnings(1023.6e6, 0.5e6, false, "8.19e+03 steps"), 1);
+    assert_int_equal(warnings(1e7, 0.5, false, "0.839 steps"), 1);
+    assert_int_equal(warnings(1e7, 0.5, true, ""), 0);
+}
+
+/* Where it was written, so that nothing but the place can differ. */
+static void mean_of(const char *objects, double far, double *out_mean)
+{
+    char text[1024];
+    film picture;
+    snprintf(
+        text, sizeof text,
+        "firstlight 1\nPerspectiveCamera { center %.17g 0 4 direction 0 0 -1 up 0 1 0 angle 40 "
+        "}\nLights { PointLight { position %.17g 3 5 color 1 1 1 } }\nMaterials { Material { "
+        "diffuseColor 0.7 0.7 0.7 specularColor 0.5 0.5 0.5 shininess 20 } }\nGroup { "
+        "MaterialIndex 0 %s Sphere { center %.17g 0 0 radius %.17g } }\n",
+        far, far + 2.0, objects, -far - 10.0, 0.01 * far + 1.0);
+    fl_scene *scene = film_parse(text, "place");
+    fl_params params;
+    assert_non_null(scene);
+    fl_params_from_scene(&params, scene, false);
+    params.width = 24;
+    params.height = 18;
+    params.precision = FL_PRECISION_DOUBLE;
+    assert_true(film_render(&picture, scene, &params, SAMPLES));
+    *out_mean = 0.0;
+    for (size_t i = 0; i < (size_t)24 * 18 * 3; i++)
+        *out_mean += (double)picture.rgb[i];
+    film_free(&picture);
+    fl_scene_destroy(scene);
+}
+
+/* Vertices are rounded near their own mesh, not where floats are a whole unit apart: loose
+ * triangles and meshes that need no transform moved by up to 1/2 there (decision 060). */
+static void vertices_far_from_all_else_stay_in_place(void **state)
+{
+    (void)state;
+    static const double fars[] = {1e5, 1e7};
+    const char *shape = "Triangle { vertex0 %.17g -1 0.3 vertex1 %.17g -0.9 0 vertex2 %.17g 1.1 "
+                        "-0.2 }";
+    for (size_t i = 0; i < FL_COUNT_OF(fars); i++) {
+        char near[256], far[256];
+        double x = fars[i], want, got;
+        snprintf(near, sizeof near, shape, -1.25, 1.125, 0.375);
+        snprintf(far, sizeof far, shape, x - 1.25, x + 1.125, x + 0.375);
+        mean_of(near, 0.0, &want);
+        mean_of(far, x, &got);
+        if (!(fabs(got - want) <= 1e-6 * want))
+            fail_msg("at %g the picture's sum is %g, not %g", x, got, want);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -133,6 +224,8 @@ int main(void)
         cmocka_unit_test(other_scales_and_places_differ_by_rounding),
         cmocka_unit_test(meshes_and_views_are_carried_along),
         cmocka_unit_test(nonsense_is_refused),
+        cmocka_unit_test(what_floats_cannot_place_is_warned_of),
+        cmocka_unit_test(vertices_far_from_all_else_stay_in_place),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
