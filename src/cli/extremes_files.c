@@ -30,6 +30,19 @@ static void set_face(fl_mesh *mesh, uint32_t f, uint32_t a, uint32_t b, uint32_t
                                .uv = {FL_NONE, FL_NONE, FL_NONE}};
 }
 
+/* A texture coordinate for every position, and each corner's that of its position. */
+static bool add_uvs(fl_mesh *mesh)
+{
+    mesh->uvs = calloc(mesh->position_count, sizeof *mesh->uvs);
+    if (!mesh->uvs)
+        return false;
+    mesh->uv_count = mesh->position_count;
+    for (uint32_t f = 0; f < mesh->face_count; f++)
+        for (int k = 0; k < 3; k++)
+            mesh->faces[f].uv[k] = mesh->faces[f].position[k];
+    return true;
+}
+
 /* The eight faces of an octahedron, each a triangular grid of n rows; grids share no corners in the
  * file, but these are the same bits, and that is what closes the ball. */
 fl_mesh *extreme_ball(uint32_t level, double radius)
@@ -53,6 +66,34 @@ fl_mesh *extreme_ball(uint32_t level, double radius)
                 if (j + 1 < n - i)
                     set_face(mesh, face++, b, flips ? a + 1 : b + 1, flips ? b + 1 : a + 1);
             }
+    }
+    if (mesh && !add_uvs(mesh)) {
+        fl_mesh_release(mesh);
+        return NULL;
+    }
+    for (uint32_t i = 0; mesh && i < at; i++) {
+        mesh->uvs[i].u = (float)(mesh->positions[i].x / radius);
+        mesh->uvs[i].v = (float)(mesh->positions[i].y / radius);
+    }
+    return mesh;
+}
+
+/* Two triangles, upright, whose texture coordinates go from `first` to first + 1. */
+static fl_mesh *make_sheet(double first)
+{
+    static const uint32_t faces[][3] = {{0, 1, 2}, {2, 1, 3}};
+    fl_mesh *mesh = mesh_with(4, FL_COUNT_OF(faces));
+    for (uint32_t i = 0; mesh && i < FL_COUNT_OF(faces); i++)
+        set_face(mesh, i, faces[i][0], faces[i][1], faces[i][2]);
+    if (mesh && !add_uvs(mesh)) {
+        fl_mesh_release(mesh);
+        return NULL;
+    }
+    for (uint32_t i = 0; mesh && i < 4; i++) {
+        double x = i & 1u, y = i >> 1;
+        mesh->positions[i] = fl_v3(2.0 * x - 1.0, 2.0 * y - 1.0, 0.0);
+        mesh->uvs[i].u = (float)(first + x);
+        mesh->uvs[i].v = (float)(first + y);
     }
     return mesh;
 }
@@ -105,7 +146,12 @@ static bool find(void *context, const char *scene_path, const char *reference, c
 static fl_mesh *load_mesh(void *context, const char *path, fl_loc loc, fl_diags *diags)
 {
     (void)context;
-    fl_mesh *mesh = strcmp(path, "ball.obj") == 0 ? extreme_ball(BALL_LEVEL, 1.0) : make_needles();
+    double first = 0.0;
+    if (strncmp(path, "sheet", 5) == 0)
+        fl_number_parse(path + 5, path + strlen(path) - strlen(".obj"), &first);
+    fl_mesh *mesh = strcmp(path, "ball.obj") == 0    ? extreme_ball(BALL_LEVEL, 1.0)
+                    : strncmp(path, "sheet", 5) == 0 ? make_sheet(first)
+                                                     : make_needles();
     if (!mesh)
         fl_error(diags, loc, "no memory for '%s'", path);
     return mesh;

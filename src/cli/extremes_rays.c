@@ -1,32 +1,143 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rays aimed at what triangles share: a closed ball must stop every one.
+ * Rays aimed at what triangles share: a closed ball must stop every one, on its near side.
  */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/extremes.h"
 
-enum { PIECE = 4096, LEVEL = 4 };
+enum { PIECE = 4096, LEVEL = 4, TRIANGLE_BYTES = 320 };
 
-static uint32_t random_bits(uint64_t *state)
+static const char head[] = "firstlight 1\nMaterials { Material { diffuseColor 1 1 1 } }\n"
+                           "Group { MaterialIndex 0 ";
+
+typedef struct range {
+    const extreme_aim *aim;
+    fl_mesh *ball;
+    fl_affine to_world; /* From the ball's own space. */
+    fl_compiled *compiled;
+    void *memory;
+    fl_rays rays;
+    fl_hits hits;
+    uint64_t random;
+} range;
+
+static uint32_t random_bits(range *r)
 {
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(*state >> 33);
+    r->random = r->random * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(r->random >> 33);
 }
 
-static double random_unit(uint64_t *state)
+static double random_unit(range *r)
 {
-    return (double)random_bits(state) * 0x1p-31;
+    return (double)random_bits(r) * 0x1p-31;
 }
+
+/* --- The ball ----------------------------------------------------------------------------------
+ */
+
+/* The faces as so many `Triangle`s; from malloc. */
+static char *loose_text(const fl_mesh *ball)
+{
+    size_t room = sizeof head + (size_t)ball->face_count * TRIANGLE_BYTES + 8, length = 0;
+    char *text = malloc(room);
+    if (!text)
+        return NULL;
+    length += (size_t)snprintf(text, room, "%s", head);
+    for (uint32_t f = 0; f < ball->face_count; f++) {
+        length += (size_t)snprintf(text + length, room - length, "Triangle {");
+        for (int k = 0; k < 3; k++) {
+            fl_vec3 p = ball->positions[ball->faces[f].position[k]];
+            length += (size_t)snprintf(text + length, room - length, " vertex%d %.17g %.17g %.17g",
+                                       k, p.x, p.y, p.z);
+        }
+        length += (size_t)snprintf(text + length, room - length, " }\n");
+    }
+    snprintf(text + length, room - length, "}\n");
+    return text;
+}
+
+static char *mesh_text(const char *objects)
+{
+    size_t room = sizeof head + strlen(objects) + 8;
+    char *text = malloc(room);
+    if (text)
+        snprintf(text, room, "%s%s }\n", head, objects);
+    return text;
+}
+
+/* The objects at their scale and place, with the ball that the rays are aimed at for ball.obj. */
+static bool compile(range *r)
+{
+    const extreme_aim *aim = r->aim;
+    double far = aim->moved * aim->scale;
+    fl_vec3 offset = fl_v3(far, -0.5 * far, 0.25 * far);
+    char *text = aim->objects ? mesh_text(aim->objects) : loose_text(r->ball);
+    fl_diags diags = {0};
+    fl_scene *scene = text ? fl_scene_parse(text, strlen(text), "rays", &(fl_parse_options){0},
+                                            &extreme_files, &diags)
+                           : NULL;
+    if (scene) {
+        if (scene->mesh_count > 0) {
+            fl_mesh_release(scene->meshes[0].mesh);
+            scene->meshes[0].mesh = fl_mesh_retain(r->ball);
+        }
+        uint32_t transform = scene->objects[0].transform;
+        r->to_world = transform == FL_NONE ? fl_affine_identity() : scene->transforms[transform];
+        if (fl_scene_map(scene, aim->scale, offset, &diags))
+            r->compiled = fl_compile(scene, &(fl_compile_options){0}, NULL, &diags);
+    }
+    for (int i = 0; r->compiled && i < 3; i++) {
+        const fl_vec3 origin = r->compiled->geometry.origin;
+        const double move[3] = {offset.x - origin.x, offset.y - origin.y, offset.z - origin.z};
+        for (int j = 0; j < 4; j++)
+            r->to_world.m[i][j] = r->to_world.m[i][j] * aim->scale + (j == 3 ? move[i] : 0.0);
+    }
+    fl_scene_destroy(scene);
+    fl_diags_deinit(&diags);
+    free(text);
+    return r->compiled != NULL;
+}
+
+static bool open_range(range *r)
+{
+    enum { ARRAYS = 12 };
+    r->ball = extreme_ball(LEVEL, 1.0);
+    float *next = r->memory = aligned_alloc(64, ARRAYS * PIECE * sizeof *next);
+    if (!r->ball || !next || !compile(r))
+        return false;
+    float **floats[] = {&r->rays.ox, &r->rays.oy, &r->rays.oz,    &r->rays.dx,
+                        &r->rays.dy, &r->rays.dz, &r->rays.t_max, &r->hits.t};
+    for (size_t i = 0; i < FL_COUNT_OF(floats); i++, next += PIECE)
+        *floats[i] = next;
+    uint32_t **words[] = {&r->rays.source_object, &r->rays.source_prim, &r->hits.object,
+                          &r->hits.prim};
+    for (size_t i = 0; i < FL_COUNT_OF(words); i++, next += PIECE)
+        *words[i] = (uint32_t *)(void *)next;
+    r->rays.count = r->rays.capacity = PIECE;
+    return true;
+}
+
+static void close_range(range *r)
+{
+    free(r->memory);
+    fl_compiled_release(r->compiled);
+    fl_mesh_release(r->ball);
+}
+
+/* --- The rays ----------------------------------------------------------------------------------
+ */
 
 /* A corner of a face, a point of an edge, or a point inside, by turns. */
-static fl_vec3 target_on(const fl_mesh *mesh, uint64_t number, uint64_t *state)
+static fl_vec3 target_on(range *r, uint64_t number)
 {
-    const uint32_t *at = mesh->faces[random_bits(state) % mesh->face_count].position;
+    const fl_mesh *mesh = r->ball;
+    const uint32_t *at = mesh->faces[random_bits(r) % mesh->face_count].position;
     fl_vec3 a = mesh->positions[at[0]], b = mesh->positions[at[1]], c = mesh->positions[at[2]];
-    double u = random_unit(state), v = random_unit(state);
+    double u = random_unit(r), v = random_unit(r);
     if (number % 3 == 0)
         return a;
     if (number % 3 == 1)
@@ -34,71 +145,48 @@ static fl_vec3 target_on(const fl_mesh *mesh, uint64_t number, uint64_t *state)
     return fl_v3_mad(fl_v3_mad(a, fl_v3_sub(b, a), u), fl_v3_sub(c, a), (1.0 - u) * v);
 }
 
-/* From somewhere inside towards the target; or through it from outside, at something that lies well
- * inside, so that rounding cannot make it a miss of the silhouette. */
-static fl_vec3 origin_for(fl_vec3 target, double radius, double distance, uint64_t *state)
+/* From somewhere inside through the target; or from outside through it towards something that lies
+ * well inside, where the ray ends: what passes the near wall must not be stopped by the far one. */
+static void aim_ray(range *r, uint32_t i, uint64_t number)
 {
-    fl_vec3 p = fl_v3(random_unit(state) - 0.5, random_unit(state) - 0.5, random_unit(state) - 0.5);
-    fl_vec3 inside = fl_v3_scale(p, radius);
-    if (distance <= 1.0)
-        return inside;
-    fl_vec3 out = fl_v3_normalize(fl_v3_sub(target, fl_v3_scale(inside, 0.5)));
-    return fl_v3_mad(target, out, radius * distance);
+    fl_vec3 target = target_on(r, number);
+    double x = random_unit(r) - 0.5, y = random_unit(r) - 0.5, z = random_unit(r) - 0.5;
+    fl_vec3 inside = fl_v3(x, y, z), from = inside;
+    double end = HUGE_VAL, distance = r->aim->distance;
+    if (distance > 0.0) {
+        inside = fl_v3_scale(inside, 0.5);
+        double depth = fl_v3_length(fl_v3_sub(target, inside));
+        from = fl_v3_mad(target, fl_v3_sub(target, inside), distance / depth);
+        end = 1.0 + depth / distance;
+    }
+    fl_vec3 o = fl_affine_point(&r->to_world, from);
+    fl_vec3 d = fl_v3_sub(fl_affine_point(&r->to_world, target), o);
+    r->rays.ox[i] = (float)o.x;
+    r->rays.oy[i] = (float)o.y;
+    r->rays.oz[i] = (float)o.z;
+    r->rays.dx[i] = (float)d.x;
+    r->rays.dy[i] = (float)d.y;
+    r->rays.dz[i] = (float)d.z;
+    r->rays.t_max[i] = (float)end;
+    r->rays.source_object[i] = r->rays.source_prim[i] = FL_NONE;
 }
 
-static fl_compiled *compile(const fl_mesh *mesh, double scale)
+bool extreme_rays(const extreme_aim *aim, extreme_result *out)
 {
-    static const char text[] =
-        "firstlight 1\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }\n"
-        "Materials { Material { diffuseColor 1 1 1 } }\n"
-        "Group { MaterialIndex 0 TriangleMesh { file ball.obj normals flat } }\n";
-    fl_diags diags = {0};
-    fl_compiled *compiled = NULL;
-    fl_scene *scene = fl_scene_parse(text, sizeof text - 1, "rays", &(fl_parse_options){0},
-                                     &extreme_files, &diags);
-    if (scene) {
-        fl_mesh_release(scene->meshes[0].mesh);
-        scene->meshes[0].mesh = fl_mesh_retain((fl_mesh *)(uintptr_t)mesh);
-        if (fl_scene_map(scene, scale, fl_v3(0, 0, 0), &diags))
-            compiled = fl_compile(scene, &(fl_compile_options){0}, NULL, &diags);
+    range r = {.aim = aim, .random = 7};
+    bool ok = open_range(&r);
+    uint64_t lost = 0, all = 0;
+    for (; ok && all < aim->count; all += PIECE) {
+        for (uint32_t i = 0; i < PIECE; i++)
+            aim_ray(&r, i, all + i);
+        fl_trace_stream_nearest(r.compiled, &r.rays, &r.hits, NULL);
+        for (uint32_t i = 0; i < PIECE; i++)
+            lost += r.hits.object[i] == FL_NONE ? 1 : 0;
     }
-    fl_scene_destroy(scene);
-    fl_diags_deinit(&diags);
-    return compiled;
-}
-
-bool extreme_rays(double scale, double distance, uint64_t count, extreme_result *out)
-{
-    fl_mesh *mesh = extreme_ball(LEVEL, 1.0);
-    fl_compiled *compiled = mesh ? compile(mesh, scale) : NULL;
-    float *o = malloc(3 * PIECE * sizeof *o), *d = malloc(3 * PIECE * sizeof *d);
-    uint32_t *object = malloc(PIECE * sizeof *object);
-    bool ok = compiled && o && d && object;
-    uint64_t state = 7, lost = 0;
-    for (uint64_t done = 0; ok && done < count; done += PIECE) {
-        for (uint32_t i = 0; i < PIECE; i++) {
-            fl_vec3 target = fl_v3_scale(target_on(mesh, done + i, &state), scale);
-            fl_vec3 from = origin_for(target, scale, distance, &state);
-            fl_vec3 way = fl_v3_sub(target, from);
-            const double a[3] = {from.x, from.y, from.z}, b[3] = {way.x, way.y, way.z};
-            for (uint32_t k = 0; k < 3; k++) {
-                o[3 * i + k] = (float)a[k];
-                d[3 * i + k] = (float)b[k];
-            }
-        }
-        ok = fl_trace_nearest(compiled, o, d, PIECE, NULL, object, NULL, NULL);
-        for (uint32_t i = 0; ok && i < PIECE; i++)
-            lost += object[i] == FL_NONE ? 1 : 0;
-    }
-    uint64_t all = (count + PIECE - 1) / PIECE * PIECE;
+    close_range(&r);
     out->off = lost > UINT32_MAX ? UINT32_MAX : (uint32_t)lost;
     out->pixels = all > UINT32_MAX ? UINT32_MAX : (uint32_t)all;
-    out->error = (double)lost / (double)all;
+    out->error = all > 0 ? (double)lost / (double)all : 0.0;
     out->passed = ok && lost == 0;
-    free(o);
-    free(d);
-    free(object);
-    fl_compiled_release(compiled);
-    fl_mesh_release(mesh);
     return ok;
 }
