@@ -1,14 +1,20 @@
 /* SPDX-License-Identifier: MIT */
-#include "io/mesh_file.h"
+#include "io/assimp_mesh.h"
 
+#include <assimp/cfileio.h>
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include "io/files.h"
+#include "io/mesh_file.h"
 
 /* Node trees are walked with a stack of our own; a deeper or wider one than this is no mesh. */
 enum { NODES_MAX = 100000 };
@@ -51,7 +57,6 @@ static uint32_t join(joiner *j, fl_mesh *mesh, fl_vec3 p)
 typedef struct assimp_reader {
     const struct aiScene *scene;
     const char *path;
-    fl_loc loc;
     fl_diags *diags;
     bool has_vertex_normals; /* The format's normals belong to vertices. */
     joiner joiner;
@@ -99,10 +104,11 @@ static bool add_mesh(assimp_reader *r, const struct aiMesh *from, const fl_affin
         for (int k = 0; k < 3; k++) {
             uint32_t index = from->mFaces[f].mIndices[k];
             if (index >= from->mNumVertices)
-                return fl_error(r->diags, r->loc, "mesh '%s' has a corner out of range", r->path);
+                return fl_error(r->diags, (fl_loc){0}, "mesh '%s' has a corner out of range",
+                                r->path);
             fl_vec3 p = fl_affine_point(to_world, vec_from(from->mVertices[index]));
             if (!fl_v3_is_finite(p))
-                return fl_error(r->diags, r->loc, "mesh '%s' has a vertex that is not finite",
+                return fl_error(r->diags, (fl_loc){0}, "mesh '%s' has a vertex that is not finite",
                                 r->path);
             face->position[k] = join(&r->joiner, mesh, p);
             face->normal[k] = has_normals ? normal_base + index : FL_NONE;
@@ -144,8 +150,8 @@ static bool walk_nodes(assimp_reader *r, totals *counting)
         placed_node placed = stack[--depth];
         is_good = visit_node(r, &placed, counting);
         if (is_good && (++visited > NODES_MAX || depth + placed.node->mNumChildren > NODES_MAX))
-            is_good =
-                fl_error(r->diags, r->loc, "mesh '%s' has more than %d nodes", r->path, NODES_MAX);
+            is_good = fl_error(r->diags, (fl_loc){0}, "mesh '%s' has more than %d nodes", r->path,
+                               NODES_MAX);
         for (uint32_t i = placed.node->mNumChildren; is_good && i-- > 0;) {
             const struct aiNode *child = placed.node->mChildren[i];
             fl_affine local = affine_from(&child->mTransformation);
@@ -160,7 +166,7 @@ static bool allocate(assimp_reader *r, const totals *need)
 {
     fl_mesh *mesh = r->mesh;
     if (need->faces > FL_MESH_ELEMENTS_MAX || need->vertices > FL_MESH_ELEMENTS_MAX)
-        return fl_error(r->diags, r->loc,
+        return fl_error(r->diags, (fl_loc){0},
                         "mesh '%s' is too large: more than %u elements of one kind", r->path,
                         FL_MESH_ELEMENTS_MAX);
     size_t slot_count = 16;
@@ -186,29 +192,136 @@ static bool convert(assimp_reader *r)
     if (!walk_nodes(r, &need) || !allocate(r, &need) || !walk_nodes(r, NULL))
         return false;
     if (r->mesh->face_count == 0)
-        return fl_error(r->diags, r->loc, "mesh '%s' has no faces", r->path);
+        return fl_error(r->diags, (fl_loc){0}, "mesh '%s' has no faces", r->path);
     return true;
 }
 
-fl_mesh *fl_mesh_load_assimp(const char *path, fl_loc loc, fl_diags *diags)
+/* ---- Files ---- */
+
+static size_t read_file(struct aiFile *file, char *out, size_t size, size_t count)
 {
-    size_t bytes;
-    if (!fl_file_check(path, "mesh", FL_MESH_FILE_MAX_BYTES, loc, diags, &bytes))
+    return fread(out, size, count, (FILE *)(void *)file->UserData);
+}
+
+static size_t tell_file(struct aiFile *file)
+{
+    return (size_t)ftell((FILE *)(void *)file->UserData);
+}
+
+static size_t size_of_file(struct aiFile *file)
+{
+    struct stat status;
+    return fstat(fileno((FILE *)(void *)file->UserData), &status) == 0 ? (size_t)status.st_size : 0;
+}
+
+static aiReturn seek_file(struct aiFile *file, size_t offset, enum aiOrigin origin)
+{
+    int from = origin == aiOrigin_SET ? SEEK_SET : origin == aiOrigin_CUR ? SEEK_CUR : SEEK_END;
+    return fseek((FILE *)(void *)file->UserData, (long)offset, from) == 0 ? aiReturn_SUCCESS
+                                                                          : aiReturn_FAILURE;
+}
+
+static size_t write_file(struct aiFile *file, const char *data, size_t size, size_t count)
+{
+    (void)file;
+    (void)data;
+    (void)size;
+    (void)count;
+    return 0;
+}
+
+static void flush_file(struct aiFile *file)
+{
+    (void)file;
+}
+
+/* A glTF names other files: only regular ones, and without waiting for the other end of a pipe. */
+static struct aiFile *open_file(struct aiFileIO *io, const char *path, const char *mode)
+{
+    (void)io;
+    struct stat status;
+    if (mode[0] != 'r')
+        return NULL;
+    int number = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    bool is_fine = number >= 0 && fstat(number, &status) == 0 && S_ISREG(status.st_mode);
+    FILE *stream = is_fine ? fdopen(number, "rb") : NULL;
+    struct aiFile *file = stream ? malloc(sizeof *file) : NULL;
+    if (file)
+        *file = (struct aiFile){read_file, write_file, tell_file,     size_of_file,
+                                seek_file, flush_file, (char *)stream};
+    else if (stream)
+        fclose(stream);
+    else if (number >= 0)
+        close(number);
+    return file;
+}
+
+static void close_file(struct aiFileIO *io, struct aiFile *file)
+{
+    (void)io;
+    fclose((FILE *)(void *)file->UserData);
+    free(file);
+}
+
+/* ---- The whole ---- */
+
+static bool has_ending(const char *path, const char *ending)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot, ending) == 0;
+}
+
+/* The library takes time by the counts of a PLY's head, and never finds the end of one that has
+ * none. Every element has a byte at least. */
+static bool check_ply_head(const char *path, size_t bytes, fl_diags *diags)
+{
+    enum { LINES_MAX = 1000 };
+    char line[512];
+    uintmax_t total = 0, count;
+    bool has_end = false;
+    FILE *file = fopen(path, "rb");
+    for (int i = 0; file && i < LINES_MAX && !has_end && fgets(line, sizeof line, file); i++) {
+        has_end = strncmp(line, "end_header", 10) == 0;
+        if (sscanf(line, "element %*s %" SCNuMAX, &count) == 1)
+            total = count > bytes || total > bytes ? UINTMAX_MAX : total + count;
+    }
+    if (file)
+        fclose(file);
+    if (!has_end)
+        return fl_error(diags, (fl_loc){0}, "cannot read mesh '%s': its head does not end", path);
+    return total <= bytes ||
+           fl_error(diags, (fl_loc){0},
+                    "cannot read mesh '%s': its head says more elements than its %zu bytes hold",
+                    path, bytes);
+}
+
+static const char *find_reason(void)
+{
+    const char *text = aiGetErrorString();
+    return strstr(text, "bad_alloc") ? "it asks for more memory than a file of its size needs"
+                                     : text;
+}
+
+fl_mesh *fl_mesh_load_assimp(const char *path, size_t bytes, fl_diags *diags)
+{
+    struct aiFileIO io = {open_file, close_file, NULL};
+    if (bytes == 0) {
+        fl_error(diags, (fl_loc){0}, "cannot read mesh '%s': it is empty", path);
+        return NULL;
+    }
+    if (has_ending(path, ".ply") && !check_ply_head(path, bytes, diags))
         return NULL;
     const struct aiScene *scene =
-        bytes > 0 ? aiImportFile(path, aiProcess_Triangulate | aiProcess_SortByPType) : NULL;
+        aiImportFileEx(path, aiProcess_Triangulate | aiProcess_SortByPType, &io);
     if (!scene || !scene->mRootNode) {
-        fl_error(diags, loc, "cannot read mesh '%s': %s", path,
-                 bytes > 0 ? aiGetErrorString() : "it is empty");
+        fl_error(diags, (fl_loc){0}, "cannot read mesh '%s': %s", path, find_reason());
         aiReleaseImport(scene);
         return NULL;
     }
-    const char *dot = strrchr(path, '.');
     assimp_reader r = {.scene = scene,
                        .path = path,
-                       .loc = loc,
                        .diags = diags,
-                       .has_vertex_normals = dot && strcasecmp(dot, ".stl") != 0,
+                       .has_vertex_normals = !has_ending(path, ".stl"),
                        .mesh = fl_mesh_create()};
     bool is_good = convert(&r);
     free(r.joiner.slots);

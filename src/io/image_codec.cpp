@@ -11,6 +11,7 @@
 #include <exception>
 #include <memory>
 #include <string>
+#include <strings.h>
 #include <sys/mman.h>
 #include <unistd.h>
 #include <vector>
@@ -76,17 +77,63 @@ bool is_linear(const OIIO::ImageSpec &spec)
     return space.empty() && spec.format.is_floating_point();
 }
 
+bool begins_with(const std::string &head, size_t at, const char *text)
+{
+    return head.compare(at, std::strlen(text), text) == 0;
+}
+
+// The library's name of a file's format. Left to itself it believes the name and then tries every
+// format that it knows, of which some are as large as a film player.
+const char *find_format(const std::string &path, const std::string &head)
+{
+    static const struct {
+        const char *start, *format;
+    } starts[] = {{"\x89PNG", "png"},
+                  {"\xFF\xD8\xFF", "jpeg"},
+                  {"\x76\x2F\x31\x01", "openexr"},
+                  {"#?", "hdr"},
+                  {"II*", "tiff"},
+                  {"II+", "tiff"},
+                  {"MM", "tiff"},
+                  {"BM", "bmp"},
+                  {"GIF8", "gif"}};
+    for (const auto &row : starts)
+        if (begins_with(head, 0, row.start))
+            return row.format;
+    if (begins_with(head, 0, "RIFF") && head.size() >= 12 && begins_with(head, 8, "WEBP"))
+        return "webp";
+    if (head.size() >= 2 && head[0] == 'P' && std::strchr("123456Ff", head[1]))
+        return "pnm";
+    // The one format that does not say what it is.
+    std::string ending = path.size() < 4 ? "" : path.substr(path.size() - 4);
+    return strcasecmp(ending.c_str(), ".tga") == 0 ? "targa" : nullptr;
+}
+
+std::string read_head(const char *path)
+{
+    char bytes[16];
+    std::FILE *file = std::fopen(path, "rb");
+    size_t count = file ? std::fread(bytes, 1, sizeof bytes, file) : 0;
+    if (file)
+        std::fclose(file);
+    return std::string(bytes, count);
+}
+
 void *open_reader(const char *path, fl_codec_header *out_header, char *message) noexcept
 {
     try {
-        OIIO::ImageSpec hints;
-        hints.attribute("oiio:UnassociatedAlpha", 1); // Dropping alpha must not darken colours.
-        auto input = OIIO::ImageInput::open(path, &hints);
-        if (!input) {
-            put_message(OIIO::geterror(), message);
+        const char *format = find_format(path, read_head(path));
+        if (!format) {
+            put_message("it is no PNG, JPEG, EXR, HDR, TIFF, TGA, BMP, PNM, GIF or WebP", message);
             return nullptr;
         }
-        const OIIO::ImageSpec &spec = input->spec();
+        OIIO::ImageSpec spec, hints;
+        hints.attribute("oiio:UnassociatedAlpha", 1); // Dropping alpha must not darken colours.
+        auto input = OIIO::ImageInput::create(format);
+        if (!input || !input->open(path, spec, hints)) {
+            put_message(input ? input->geterror() : OIIO::geterror(), message);
+            return nullptr;
+        }
         if (spec.nchannels < 1 || spec.deep) {
             put_message("it has no plain colour channels", message);
             return nullptr;

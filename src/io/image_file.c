@@ -2,16 +2,15 @@
 #include "io/image_file.h"
 
 #include <dlfcn.h>
-#include <limits.h>
 #include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 #include "io/files.h"
 #include "io/image_whole.h"
+#include "io/module.h"
 
 /* ---- The codec module ---- */
 
@@ -19,30 +18,18 @@ static pthread_once_t codec_once = PTHREAD_ONCE_INIT;
 static const fl_codec *codec;
 static char codec_message[FL_CODEC_MESSAGE_BYTES];
 
-/* Where the module may stand, from the folder of the running program: beside it, above it (test
- * programs), or in the library folder of an installation. */
-static const char *const module_folders[] = {"", "../", "../../", "../lib/firstlight/"};
-
 static void load_codec(void)
 {
-    char program[PATH_MAX], path[PATH_MAX + 64];
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    program[length > 0 ? length : 0] = '\0';
-    char *slash = strrchr(program, '/');
-    if (slash)
-        slash[1] = '\0';
-    for (size_t i = 0; i < FL_COUNT_OF(module_folders) && !codec; i++) {
-        snprintf(path, sizeof path, "%s%s" FL_CODEC_MODULE, program, module_folders[i]);
-        if (access(path, R_OK) != 0)
-            continue;
-        void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL);
-        codec = module ? dlsym(module, FL_CODEC_SYMBOL) : NULL;
-        if (!codec)
-            snprintf(codec_message, sizeof codec_message, "%s", dlerror());
-    }
-    if (!codec && !*codec_message)
+    char path[FL_MODULE_PATH_BYTES];
+    if (!fl_module_find(FL_CODEC_MODULE, path)) {
         snprintf(codec_message, sizeof codec_message, "%s is not in or near %.300s",
-                 FL_CODEC_MODULE, program);
+                 FL_CODEC_MODULE, path);
+        return;
+    }
+    void *module = dlopen(path, RTLD_LAZY | RTLD_LOCAL);
+    codec = module ? dlsym(module, FL_CODEC_SYMBOL) : NULL;
+    if (!codec)
+        snprintf(codec_message, sizeof codec_message, "%s", dlerror());
 }
 
 static const fl_codec *get_codec(fl_diags *diags)
@@ -55,8 +42,8 @@ static const fl_codec *get_codec(fl_diags *diags)
 
 /* ---- Reading ---- */
 
-static bool has_legal_size(const char *path, const fl_codec_header *header, fl_loc loc,
-                           fl_diags *diags)
+static bool has_legal_size(const char *path, size_t file_bytes, const fl_codec_header *header,
+                           fl_loc loc, fl_diags *diags)
 {
     if (header->width < 1 || header->height < 1 || header->depth > 1)
         return fl_error(diags, loc, "image '%s' is not a flat picture", path);
@@ -68,6 +55,11 @@ static bool has_legal_size(const char *path, const fl_codec_header *header, fl_l
     if (bytes > FL_IMAGE_MAX_BYTES)
         return fl_error(diags, loc, "image '%s' is too large: %ju bytes in memory, at most %zu",
                         path, (uintmax_t)bytes, FL_IMAGE_MAX_BYTES);
+    if (bytes > FL_IMAGE_UNSUSPECTED_BYTES && bytes / FL_IMAGE_EXPANSION_MAX > file_bytes)
+        return fl_error(
+            diags, loc,
+            "cannot read image '%s': it should have %jd x %jd pixels, and has %zu bytes", path,
+            (intmax_t)header->width, (intmax_t)header->height, file_bytes);
     return true;
 }
 
@@ -88,13 +80,13 @@ static bool make_finite_linear(fl_image *image, bool is_linear, const char *path
 }
 
 static fl_image *read_image(const fl_codec *from, void *reader, const fl_codec_header *header,
-                            const char *path, fl_loc loc, fl_diags *diags)
+                            const char *path, size_t file_bytes, fl_loc loc, fl_diags *diags)
 {
     char message[FL_CODEC_MESSAGE_BYTES];
     fl_pixel_format format = header->sample != FL_CODEC_U8 ? FL_PIXEL_FLOAT
                              : header->is_linear           ? FL_PIXEL_LINEAR8
                                                            : FL_PIXEL_SRGB8;
-    if (!has_legal_size(path, header, loc, diags))
+    if (!has_legal_size(path, file_bytes, header, loc, diags))
         return NULL;
     fl_image *image = fl_image_create((uint32_t)header->width, (uint32_t)header->height, format);
     if (!image) {
@@ -113,9 +105,9 @@ static fl_image *read_image(const fl_codec *from, void *reader, const fl_codec_h
     return image;
 }
 
-/* The library takes a JPEG without its end as one with a grey end, and lets libpng complain on the
- * terminal: both are looked over first. */
-static bool check_whole(const char *path, fl_loc loc, fl_diags *diags)
+/* The library takes a JPEG without its end as one with a grey end, lets libpng complain on the
+ * terminal, and takes memory for what an EXR or a GIF says it has: all are looked over first. */
+static bool check_whole(const char *path, fl_loc loc, fl_diags *diags, size_t *out_bytes)
 {
     size_t bytes;
     char *data = fl_file_load(path, "image", FL_IMAGE_FILE_MAX_BYTES, loc, diags, &bytes);
@@ -126,16 +118,21 @@ static bool check_whole(const char *path, fl_loc loc, fl_diags *diags)
         fl_error(diags, loc, "image '%s' is empty", path);
     else if (!is_whole)
         fl_error(diags, loc, "cannot read image '%s': it is cut off after %zu bytes", path, bytes);
+    fl_codec_header claim = {.depth = 1, .sample = FL_CODEC_U8};
+    bool is_fine = bytes > 0 && is_whole;
+    if (is_fine && fl_image_claim(data, bytes, &claim.width, &claim.height))
+        is_fine = has_legal_size(path, bytes, &claim, loc, diags);
     free(data);
-    return bytes > 0 && is_whole;
+    *out_bytes = bytes;
+    return is_fine;
 }
 
 /* Check and open. NULL after adding an error. */
 static void *open_image(const char *path, fl_loc loc, fl_diags *diags, const fl_codec **out_codec,
-                        fl_codec_header *out_header)
+                        fl_codec_header *out_header, size_t *out_bytes)
 {
     char message[FL_CODEC_MESSAGE_BYTES];
-    if (!check_whole(path, loc, diags))
+    if (!check_whole(path, loc, diags, out_bytes))
         return NULL;
     *out_codec = get_codec(diags);
     if (!*out_codec)
@@ -150,10 +147,11 @@ fl_image *fl_image_load(const char *path, fl_loc loc, fl_diags *diags)
 {
     const fl_codec *from;
     fl_codec_header header;
-    void *reader = open_image(path, loc, diags, &from, &header);
+    size_t bytes;
+    void *reader = open_image(path, loc, diags, &from, &header, &bytes);
     if (!reader)
         return NULL;
-    fl_image *image = read_image(from, reader, &header, path, loc, diags);
+    fl_image *image = read_image(from, reader, &header, path, bytes, loc, diags);
     from->close(reader);
     return image;
 }
@@ -163,7 +161,8 @@ bool fl_image_load_text(const char *path, const char *key, fl_loc loc, fl_diags 
 {
     const fl_codec *from;
     fl_codec_header header;
-    void *reader = open_image(path, loc, diags, &from, &header);
+    size_t bytes;
+    void *reader = open_image(path, loc, diags, &from, &header, &bytes);
     if (!reader)
         return false;
     *out_text = from->find_text(reader, key);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Pictures on disk. Reads what the image library reads; writes .png .tif .tiff .bmp .exr.
+ * Pictures on disk. Reads PNG, JPEG, EXR, HDR, TIFF, TGA, BMP, PNM, GIF and WebP, whatever the
+ * file is called; writes .png .tif .tiff .bmp .exr.
  */
 #ifndef FL_IO_IMAGE_FILE_H
 #define FL_IO_IMAGE_FILE_H
@@ -12,6 +13,11 @@
 enum { FL_IMAGE_SIDE_MAX = 65536 };
 #define FL_IMAGE_MAX_BYTES      ((size_t)1 << 30)
 #define FL_IMAGE_FILE_MAX_BYTES ((size_t)1 << 30)
+
+/** A picture above the first has a byte in its file for at most so many in memory, else its file is
+ * damaged: a white one of a bit a pixel in PNG comes to 25,000. */
+#define FL_IMAGE_UNSUSPECTED_BYTES ((size_t)64 << 20)
+enum { FL_IMAGE_EXPANSION_MAX = 1 << 15 };
 
 /** Read a picture as a texture. 8-bit files keep their bytes (SRGB8, or LINEAR8 where the file says
  * so); everything deeper becomes linear FLOAT, an sRGB file by the core's curve. Grey becomes RGB,

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "io/files.h"
+#include "io/mesh_apart.h"
 #include "io/obj.h"
 
 static fl_mesh *load_obj(const char *path, fl_loc loc, fl_diags *diags)
@@ -25,11 +26,9 @@ typedef struct mesh_kind {
 } mesh_kind;
 
 static const mesh_kind kinds[] = {
-    {".obj", load_obj},
-    {".ply", fl_mesh_load_assimp},
-    {".stl", fl_mesh_load_assimp},
-    {".gltf", fl_mesh_load_assimp},
-    {".glb", fl_mesh_load_assimp},
+    {".obj", load_obj},           {".ply", fl_mesh_load_apart},
+    {".stl", fl_mesh_load_apart}, {".gltf", fl_mesh_load_apart},
+    {".glb", fl_mesh_load_apart},
 };
 
 fl_mesh *fl_mesh_load(const char *path, fl_loc loc, fl_diags *diags)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Meshes on disk: .obj by our own located reader, .ply .stl .gltf .glb by assimp.
+ * Meshes on disk: .obj by our own located reader, .ply .stl .gltf .glb by assimp in a process of
+ * its own (mesh_apart.h).
  */
 #ifndef FL_IO_MESH_FILE_H
 #define FL_IO_MESH_FILE_H
@@ -15,10 +16,5 @@
 /** Read a mesh; the extension chooses the reader. One reference is the caller's. NULL after adding
  * an error: problems inside an .obj file are located in it, others at `loc`. Any thread. */
 fl_mesh *fl_mesh_load(const char *path, fl_loc loc, fl_diags *diags);
-
-/** Read the binary and nested formats by assimp: all meshes of the file as one, placed by their
- * nodes, identical positions joined. STL's face normals are dropped: they belong to no vertex, and
- * `auto` would be flat. NULL after adding an error at `loc`. */
-fl_mesh *fl_mesh_load_assimp(const char *path, fl_loc loc, fl_diags *diags);
 
 #endif

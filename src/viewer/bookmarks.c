@@ -110,14 +110,14 @@ static bool find_view(const char *text, const char *name, span *out)
     return false;
 }
 
-/* The line of the comment that holds a slot's lights. */
+/* The comment that holds a slot's lights, to the end of its line. */
 static bool find_lights(const char *text, const char *name, span *out)
 {
     static const char mark[] = "# lights ";
     for (const char *at = text; (at = strstr(at, mark)); at += sizeof mark - 1) {
         const char *numbers = at + sizeof mark - 1;
         *out = (span){at, numbers + strcspn(numbers, "\n")};
-        if ((at == text || at[-1] == '\n') && numbers[0] == name[0] && numbers[1] == ' ')
+        if (numbers[0] == name[0] && numbers[1] == ' ')
             return true;
     }
     return false;
@@ -127,8 +127,8 @@ static bool find_lights(const char *text, const char *name, span *out)
 static bool read_text(vw_bookmarks *bookmarks, const char *text, size_t bytes, const char *path,
                       fl_diags *diags)
 {
-    fl_scene *scene =
-        fl_scene_parse(text, bytes, path, &(fl_parse_options){0}, &fl_files_on_disk, diags);
+    fl_scene *scene = fl_scene_parse(text, bytes, path, &(fl_parse_options){0}, NULL,
+                                     diags); /* cameras are no reason to open files */
     for (uint32_t slot = 0; scene && slot < VW_SLOT_COUNT; slot++) {
         const char name[2] = {(char)('1' + slot), 0};
         char *lights = bookmarks->lights[slot];
@@ -174,7 +174,8 @@ static char *with_slot(const vw_bookmarks *bookmarks, uint32_t slot, char *text)
     const char name[2] = {(char)('1' + slot), 0}, *lights = bookmarks->lights[slot];
     span old = {NULL, NULL};
     while (text && find_lights(text, name, &old)) {
-        const char *rest = old.end + (*old.end == '\n');
+        bool is_line = old.begin == text || old.begin[-1] == '\n';
+        const char *rest = old.end + (is_line && *old.end == '\n');
         memmove(text + (old.begin - text), rest, strlen(rest) + 1);
     }
     size_t most = text ? strlen(text) + SLOT_BYTES : 0;

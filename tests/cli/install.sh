@@ -23,10 +23,27 @@ render() { # SCENE OUT: with the hash of its film
 }
 render "$scenes/vase.txt" vase.png
 [ ! -f ../moved/share/firstlight/assets/bunny_1k.obj ] || render "$scenes/bunny.txt" bunny.exr
+cat >one.stl <<'END'
+solid one
+facet normal 0 0 1
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+endsolid one
+END
+cat >stl.txt <<'END'
+firstlight 1
+PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }
+Group { TriangleMesh { file one.stl } }
+END
+render stl.txt stl.png
 
 # Without a word the vase opens: found, and then there is no display for it.
 (unset DISPLAY WAYLAND_DISPLAY; "$program" >stdout 2>stderr)
 [ $? = 4 ] && grep -q 'no display' stderr || { echo "FAIL: the default scene"; cat stderr; failed=$((failed + 1)); }
 
-echo "3 tried, $failed failed"
+echo "4 tried, $failed failed"
 [ "$failed" = 0 ]

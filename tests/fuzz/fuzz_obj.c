@@ -3,33 +3,11 @@
  * OBJ text: a mesh with every index in range and every number finite, or located errors; and what
  * is a mesh can be compiled and traced.
  */
-#include <math.h>
 #include <string.h>
 
-#include "fuzz/fuzz.h"
+#include "fuzz/check_mesh.h"
 #include "fuzz/render_small.h"
 #include "io/obj.h"
-
-static void check_indices(const uint32_t index[3], uint32_t count, int may_miss)
-{
-    for (int i = 0; i < 3; i++)
-        MUST(index[i] < count || (may_miss && index[i] == FL_NONE));
-}
-
-static void check_mesh(const fl_mesh *mesh)
-{
-    for (uint32_t i = 0; i < mesh->position_count; i++)
-        MUST(fl_v3_is_finite(mesh->positions[i]));
-    for (uint32_t i = 0; i < mesh->normal_count; i++)
-        MUST(fl_v3_is_finite(mesh->normals[i]));
-    for (uint32_t i = 0; i < mesh->uv_count; i++)
-        MUST(isfinite(mesh->uvs[i].u) && isfinite(mesh->uvs[i].v));
-    for (uint32_t i = 0; i < mesh->face_count; i++) {
-        check_indices(mesh->faces[i].position, mesh->position_count, 0);
-        check_indices(mesh->faces[i].normal, mesh->normal_count, 1);
-        check_indices(mesh->faces[i].uv, mesh->uv_count, 1);
-    }
-}
 
 static bool find(void *context, const char *scene_path, const char *reference, char *out_path,
                  size_t out_bytes)

@@ -18,7 +18,7 @@ bool fl_image_load_text(const char *path, const char *key, fl_loc loc, fl_diags 
                         char **out_text)
 {
     static const char *const keys[] = {"firstlight:view", "firstlight:settings",
-                                       "firstlight:samples"};
+                                       "firstlight:samples", "firstlight:lights"};
     (void)path;
     (void)loc;
     (void)diags;
@@ -68,23 +68,74 @@ static void check_written(const fl_params *params)
     MUST(again.aperture == params->camera.aperture);
 }
 
+static const char base[] =
+    "firstlight 1\nPerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }\n";
+static const char base_lights[] =
+    "Lights { DirectionalLight { direction 0 0 -1 color 1 1 1 }\n"
+    "PointLight { position 1 2 3 color 1 1 1 attenuation 1 0 0.1 }\n"
+    "DiskLight { position 0 5 0 direction 0 -1 0 radius 1 color 1 1 1 samples 4 twoSided 0 } }\n";
+
+static void check_same_light(const fl_light *a, const fl_light *b)
+{
+    MUST(a->kind == b->kind && a->samples == b->samples && a->is_two_sided == b->is_two_sided);
+    MUST(memcmp(&a->color, &b->color, sizeof a->color) == 0);
+    MUST(memcmp(a->attenuation, b->attenuation, sizeof a->attenuation) == 0);
+    MUST(a->kind == FL_LIGHT_DIRECTIONAL ||
+         memcmp(&a->position, &b->position, sizeof a->position) == 0);
+    MUST(a->kind == FL_LIGHT_POINT || fl_v3_length(fl_v3_sub(a->direction, b->direction)) <= 1e-5);
+    MUST(a->kind != FL_LIGHT_DISK || a->radius == b->radius);
+}
+
+/* Lights that a picture brings stay within what any scene may say: as scene text they are read, and
+ * the same; as the text of a picture they come back in every bit. */
+static void check_lights(const fl_params *params, const fl_scene *before)
+{
+    static char text[1 << 16], line[FL_LIGHT_TEXT_MAX], again[FL_LIGHT_TEXT_MAX];
+    fl_light copy[3];
+    fl_diags diags = {0};
+    MUST(params->light_count == FL_COUNT_OF(copy));
+    for (size_t i = 0; i < FL_COUNT_OF(copy); i++) {
+        const fl_light *light = &params->lights[i], *own = &before->lights[i];
+        MUST(light->kind == own->kind && light->samples == own->samples);
+        MUST(fl_v3_is_finite(light->position) && fl_v3_is_finite(light->direction));
+        MUST(fl_v3_is_finite(light->color) && light->radius >= 0.0 && isfinite(light->radius));
+    }
+    memcpy(copy, before->lights, sizeof copy);
+    fl_lights_text(params->lights, params->light_count, line);
+    MUST(line[0] && fl_lights_read(line, copy, FL_COUNT_OF(copy)));
+    fl_lights_text(copy, FL_COUNT_OF(copy), again);
+    MUST(strcmp(line, again) == 0);
+    memcpy(text, base, sizeof base - 1);
+    size_t bytes = sizeof base - 1 +
+                   fl_lights_scene_text(params->lights, params->light_count, text + sizeof base - 1,
+                                        sizeof text - sizeof base);
+    MUST(bytes < sizeof text);
+    fl_scene *scene = fl_scene_parse(text, bytes, "lights", &(fl_parse_options){0}, NULL, &diags);
+    MUST(scene && diags.error_count == 0 && scene->light_count == FL_COUNT_OF(copy));
+    for (size_t i = 0; i < FL_COUNT_OF(copy); i++)
+        check_same_light(&params->lights[i], &scene->lights[i]);
+    fl_scene_destroy(scene);
+    fl_diags_deinit(&diags);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t bytes)
 {
-    static const char base[] =
-        "firstlight 1\nPerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 }\n";
     fl_diags diags = {0};
     fl_saved_state state;
     fl_params params;
+    char text[sizeof base + sizeof base_lights];
+    snprintf(text, sizeof text, "%s%s", base, base_lights);
     input = data;
     input_bytes = bytes;
     bool ok = fl_saved_state_load("picture.png", &state, &diags);
     MUST(ok == (diags.error_count == 0));
     fl_scene *scene =
-        fl_scene_parse(base, sizeof base - 1, "base", &(fl_parse_options){0}, NULL, &diags);
+        fl_scene_parse(text, strlen(text), "base", &(fl_parse_options){0}, NULL, &diags);
     MUST(scene);
     fl_params_from_scene(&params, scene, false);
     if (ok) {
         fl_saved_state_apply(&state, scene, &params);
+        check_lights(&params, scene);
         if (fl_params_check(&params, &diags)) {
             MUST(params.sampler <= FL_SAMPLER_PADDED);
             MUST(params.solver <= FL_REVOLVE_MAX_STARTS);

@@ -18,7 +18,7 @@ cc $flags -Isrc -c tests/perf/kernels.c -o "$work/main.o"
 for source in bench_mesh bench_rays; do
     cc $flags -Isrc -c "src/cli/$source.c" -o "$work/$source.o"
 done
-c++ "$work"/*.o "$build/src/io/libfl_io.a" "$build/src/core/libfl_core.a" -lassimp -lpthread -lm -o "$work/kernels" 2>"$work/log" ||
+c++ "$work"/*.o "$build/src/io/libfl_io.a" "$build/src/core/libfl_core.a" -lpthread -lm -o "$work/kernels" 2>"$work/log" ||
     { cat "$work/log"; exit 1; }
 for mesh; do
     "$work/kernels" "$mesh" "$rounds"

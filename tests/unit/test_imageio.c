@@ -261,7 +261,7 @@ static void what_is_no_picture_is_refused(void **state)
     refuse(temp_path("none.png"), "No such file");
     refuse(temp_folder, "it is a folder");
     refuse(temp_write("empty.png", "", 0), "is empty");
-    refuse(temp_write("text.png", "not a picture at all\n", 21), "cannot read image");
+    refuse(temp_write("text.png", "not a picture at all\n", 21), "it is no PNG, JPEG, EXR");
     refuse(temp_write("text", "not a picture at all\n", 21), "cannot read image");
     refuse("/dev/zero", "not a regular file");
     assert_int_equal(mkfifo(temp_path("pipe.png"), 0666), 0);
@@ -271,6 +271,28 @@ static void what_is_no_picture_is_refused(void **state)
     refuse(temp_write("huge.ppm", huge, sizeof huge - 1), "too large");
     static const char wide[] = "P6\n70000 1\n255\nabc";
     refuse(temp_write("wide.ppm", wide, sizeof wide - 1), "at most 65536 a side");
+}
+
+/* A kilobyte of an EXR or a GIF whose head asks for gigabytes: refused before the library takes
+ * them. */
+static void heads_that_promise_too_much_are_refused(void **state)
+{
+    (void)state;
+    size_t count, at = 0;
+    fl_image *image = make_bytes(FL_PIXEL_SRGB8);
+    save(temp_path("large.exr"), image);
+    fl_image_release(image);
+    uint8_t *bytes = temp_read(temp_path("large.exr"), &count);
+    while (memcmp(bytes + at, "dataWindow\0box2i", 17) != 0)
+        at++;
+    memcpy(bytes + at + 21, (const uint8_t[16]){[8] = 0xFF, 0xFF, 0, 0, 0xFF, 0xFF}, 16);
+    refuse(temp_write("large.exr", bytes, count), "too large");
+    memcpy(bytes + at + 21, (const uint8_t[16]){[8] = 0xFF, 0x3F, 0, 0, 0xFF, 0x1F}, 16);
+    refuse(temp_write("large.exr", bytes, count), "should have 16384 x 8192 pixels, and has");
+    memcpy(bytes + at + 17, (const uint8_t[4]){0, 0, 0, 0x40}, 4);
+    refuse(temp_write("large.exr", bytes, count), "cut off");
+    free(bytes);
+    refuse(temp_write("large.gif", "GIF89a\xFF\x7F\xFF\x1F\x80\0\0", 13), "32767 x 8191 pixels");
 }
 
 static void cut_off_files_are_refused(void **state)
@@ -374,6 +396,7 @@ int main(void)
         cmocka_unit_test(grey_alpha_and_linear_files_are_understood),
         cmocka_unit_test(a_wrong_extension_does_not_matter),
         cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(heads_that_promise_too_much_are_refused),
         cmocka_unit_test(cut_off_files_are_refused),
         cmocka_unit_test(the_end_of_a_jpeg_is_looked_for_where_it_is),
         cmocka_unit_test(a_float_that_is_no_number_is_refused),

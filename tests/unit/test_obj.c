@@ -341,6 +341,56 @@ static void gltf_nodes_place_their_meshes(void **state)
     fl_mesh_release(mesh);
 }
 
+/* The library asserts, crashes, goes on for ever or waits: whatever it does, the program lives. */
+static void damaged_meshes_are_refused(void **state)
+{
+    (void)state;
+    static const char head[] = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n"
+                               "property float y\nproperty float z\nelement face 1\n"
+                               "property list uchar int vertex_indices\n";
+    static const char corners[] = "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+    static const struct {
+        const char *name, *end, *message;
+    } cases[] = {
+        {"cut.ply", "", "its head does not end"},
+        {"many.ply", "element edge 4000000000\nend_header\n", "more elements than its"},
+        {"below.ply", "-1 0 1 2\n", "cannot read mesh"},
+        {"beyond.ply", "3 0 1 77\n", "mesh"},
+        {"wide.ply", "4294967295 0 1 2\n", "cannot read mesh"},
+    };
+    char text[1024];
+    const fl_loc loc = {"a.scene", 3, 7, 4};
+    for (size_t i = 0; i < FL_COUNT_OF(cases); i++) {
+        fl_diags diags = {0};
+        snprintf(text, sizeof text, "%s%s%s", head, i > 1 ? corners : "", cases[i].end);
+        assert_null(fl_mesh_load(temp_write(cases[i].name, text, strlen(text)), loc, &diags));
+        assert_int_equal(diags.items[0].loc.line, 3);
+        expect_error(&diags, FL_CAUSE_INPUT, cases[i].message);
+    }
+    /* A buffer that would never come. */
+    static const char gltf[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{"
+        "\"POSITION\":0}}]}],\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"scene\":0,"
+        "\"buffers\":[{\"byteLength\":36,\"uri\":\"pipe.bin\"}],\"bufferViews\":[{\"buffer\":0,"
+        "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+        "\"type\":\"VEC3\"}]}";
+    fl_diags diags = {0};
+    assert_int_equal(mkfifo(temp_path("pipe.bin"), 0666), 0);
+    assert_null(fl_mesh_load(temp_write("pipe.gltf", gltf, sizeof gltf - 1), loc, &diags));
+    expect_error(&diags, FL_CAUSE_INPUT, "cannot read mesh");
+}
+
+static void a_reader_that_does_not_start_is_said(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    temp_write("libm.so.6", "no library", 10);
+    assert_int_equal(setenv("LD_LIBRARY_PATH", temp_folder, 1), 0);
+    assert_null(fl_mesh_load(temp_write("a.stl", "solid", 5), (fl_loc){0}, &diags));
+    unsetenv("LD_LIBRARY_PATH");
+    expect_error(&diags, FL_CAUSE_ENVIRONMENT, "fl_assimp does not work here");
+}
+
 /* The simplest counting of statements that could work, for files known to be well formed. */
 static void count_statements(const char *path, uint32_t counts[4])
 {
@@ -416,6 +466,8 @@ int main(void)
         cmocka_unit_test(a_missing_or_wrong_file_is_one_clear_error),
         cmocka_unit_test(ply_and_stl_share_their_vertices),
         cmocka_unit_test(gltf_nodes_place_their_meshes),
+        cmocka_unit_test(damaged_meshes_are_refused),
+        cmocka_unit_test(a_reader_that_does_not_start_is_said),
         cmocka_unit_test(meshes_of_the_courses_are_all_read),
     };
     return cmocka_run_group_tests(tests, temp_begin, temp_end);

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+#include "io/module.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+bool fl_module_find(const char *name, char out_path[FL_MODULE_PATH_BYTES])
+{
+    static const char *const folders[] = {"", "../", "../../", "../lib/firstlight/"};
+    char program[PATH_MAX];
+    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
+    program[length > 0 ? length : 0] = '\0';
+    char *slash = strrchr(program, '/');
+    if (slash)
+        slash[1] = '\0';
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        int bytes = snprintf(out_path, FL_MODULE_PATH_BYTES, "%s%s%s", program, folders[i], name);
+        if (bytes < FL_MODULE_PATH_BYTES && access(out_path, R_OK) == 0)
+            return true;
+    }
+    snprintf(out_path, FL_MODULE_PATH_BYTES, "%s", program);
+    return false;
+}
