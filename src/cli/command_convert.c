@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #define _XOPEN_SOURCE 700 /* realpath */
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,8 +108,10 @@ static bool save(const char *in, const char *out, const char *text, size_t bytes
     const char *slash = strrchr(out, '/');
     char folder[PATH_MAX];
     snprintf(folder, sizeof folder, "%.*s.", slash ? (int)(slash - out) + 1 : 0, out);
-    if (!cli_place_check(out, diags) || !realpath(folder, m.folder))
-        return diags->error_count || fl_environment_error(diags, "cannot write '%s'", out);
+    if (!cli_place_check(out, diags))
+        return false;
+    if (!realpath(folder, m.folder))
+        return fl_environment_error(diags, "cannot write '%s': %s", out, strerror(errno));
     char *moved = NULL;
     size_t moved_bytes = 0;
     FILE *file = open_memstream(&moved, &moved_bytes);
