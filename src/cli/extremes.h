@@ -41,6 +41,25 @@ typedef struct extreme_family {
 extern const extreme_family extreme_families[];
 extern const uint32_t extreme_family_count;
 
+enum { EXTREME_FIELDS_MAX = 10, EXTREME_TEXT_MAX = 8192 };
+
+/** A value of a family, cut into its fields. */
+typedef struct extreme_value {
+    char text[256];
+    const char *fields[EXTREME_FIELDS_MAX]; /**< Into `text`: it must not move. */
+    uint32_t count;
+    bool is_slow, is_same;
+    bool has_limits; /**< Of its own. */
+    uint32_t off_max;
+    double bound;
+} extreme_value;
+
+void extreme_value_read(const extreme_family *family, const char *text, extreme_value *out_value);
+/** The family's text with the fields put in. */
+void extreme_text(const extreme_family *family, const extreme_value *value,
+                  char out_text[EXTREME_TEXT_MAX]);
+double extreme_number(const char *text);
+
 /** What came out. */
 typedef struct extreme_result {
     double error;         /**< Rmse of the pixels that agree, relative to that of the picture. */

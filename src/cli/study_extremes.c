@@ -14,26 +14,14 @@
 #include "cli/commands.h"
 #include "cli/extremes.h"
 
-enum { WIDTH = 48, HEIGHT = 36, SAMPLES = 4, FIELDS_MAX = 10, TEXT_MAX = 8192, SIZE_UNITS = 10 };
+enum { WIDTH = 48, HEIGHT = 36, SAMPLES = 4, SIZE_UNITS = 10 };
 /* Unless a value says otherwise, one pixel in so many may be off. */
 enum { OFF_SHARE_MAX = 100 };
 
-static const double bound_default = 1e-6;
 /* A pixel is off when it differs by more than this part of the picture's root mean square. */
 static const double off_share = 1.0 / 256.0;
 /* Pictures beyond this are refused here, so that a row does not fill a small machine. */
 static const size_t memory_limit = (size_t)1 << 30;
-
-/* A value of a family, cut into its fields. */
-typedef struct value {
-    char text[256];
-    const char *fields[FIELDS_MAX];
-    uint32_t count;
-    bool is_slow, is_same; /* as the one before it */
-    bool has_limits;       /* of its own */
-    uint32_t off_max;
-    double bound;
-} value;
 
 typedef struct picture {
     float *rgb;
@@ -50,57 +38,9 @@ typedef struct suite {
     picture last; /* The true picture of the value before, of the same family. */
 } suite;
 
-static double number(const char *text)
+static double field(const extreme_value *v, uint32_t i)
 {
-    double x = 0.0;
-    fl_number_parse(text, text + strlen(text), &x);
-    return x;
-}
-
-/* The fields point into *out, which must not move. */
-static void value_read(const extreme_family *f, const char *text, value *out)
-{
-    *out = (value){.off_max = f->off_max, .bound = f->bound > 0.0 ? f->bound : bound_default};
-    for (; *text == '!' || *text == '='; text++) {
-        out->is_slow |= *text == '!';
-        out->is_same |= *text == '=';
-    }
-    snprintf(out->text, sizeof out->text, "%s", text);
-    char *limits = strchr(out->text, '#');
-    if (limits) {
-        *limits++ = 0;
-        out->has_limits = true;
-        out->off_max = (uint32_t)strtoul(limits, &limits, 10);
-        out->bound = number(limits + strspn(limits, " "));
-    }
-    for (char *at = out->text; at && out->count < FIELDS_MAX;) {
-        out->fields[out->count++] = at;
-        at = strchr(at, '|');
-        if (at)
-            *at++ = 0;
-    }
-}
-
-static double field(const value *v, uint32_t i)
-{
-    return i < v->count ? number(v->fields[i]) : 0.0;
-}
-
-/* The family's text with the fields put in. */
-static void fill(const char *text, const value *v, char out[TEXT_MAX])
-{
-    size_t length = 0;
-    for (; *text && length + 1 < TEXT_MAX; text++) {
-        uint32_t field = (uint32_t)(text[1] - '0');
-        if (*text != '@' || field >= v->count) {
-            out[length++] = *text;
-            continue;
-        }
-        int written = snprintf(out + length, TEXT_MAX - length, "%s", v->fields[field]);
-        length += (size_t)written;
-        text++;
-    }
-    out[length < TEXT_MAX ? length : TEXT_MAX - 1] = 0;
+    return i < v->count ? extreme_number(v->fields[i]) : 0.0;
 }
 
 /* --- Rendering ---------------------------------------------------------------------------------
@@ -205,7 +145,7 @@ static double error_of_mean(const picture *got, const picture *want)
     return fabs(difference) / (sum > 0.0 ? sum : 1.0);
 }
 
-static void set_limits(const value *v, extreme_result *out)
+static void set_limits(const extreme_value *v, extreme_result *out)
 {
     uint32_t most = out->pixels / OFF_SHARE_MAX;
     out->bound = v->bound;
@@ -218,7 +158,8 @@ static bool is_within(const extreme_result *r)
 }
 
 /* What a value changes is known: all of the picture, or nothing. Leaves `want` as the last one. */
-static bool follows_the_last(picture *last, const value *v, picture *want, extreme_result *out)
+static bool follows_the_last(picture *last, const extreme_value *v, picture *want,
+                             extreme_result *out)
 {
     bool is_true = true;
     if (last->rgb && last->floats == want->floats) {
@@ -243,15 +184,15 @@ static void take_note(const fl_diags *diags, extreme_result *out)
 }
 
 /* How far the scene is moved: across all axes, and not by equal parts. */
-static fl_vec3 place_of(const extreme_family *f, const value *v)
+static fl_vec3 place_of(const extreme_family *f, const extreme_value *v)
 {
     bool is_moved = f->judge == EXTREME_MOVED || f->judge == EXTREME_WARNED;
     double far = is_moved ? SIZE_UNITS * field(v, 0) : 0.0;
     return fl_v3(far, -0.5 * far, 0.25 * far);
 }
 
-static void judge_picture(suite *s, const extreme_family *f, const value *v, const char *text,
-                          extreme_result *out)
+static void judge_picture(suite *s, const extreme_family *f, const extreme_value *v,
+                          const char *text, extreme_result *out)
 {
     fl_diags diags = {0};
     picture got = {0}, want = {0};
@@ -275,8 +216,8 @@ static void judge_picture(suite *s, const extreme_family *f, const value *v, con
 }
 
 /* Floats must be warned of, in the text's own terms, and double must be what the warning says. */
-static void judge_warned(const suite *s, const extreme_family *f, const value *v, const char *text,
-                         extreme_result *out)
+static void judge_warned(const suite *s, const extreme_family *f, const extreme_value *v,
+                         const char *text, extreme_result *out)
 {
     fl_diags diags = {0};
     picture rough = {0}, got = {0}, want = {0};
@@ -321,7 +262,7 @@ static void judge_counted(const suite *s, const extreme_family *f, const char *t
 }
 
 /* Refused means: an error that names what is wrong; where the text is to blame, its place too. */
-static void judge_refusal(const extreme_family *f, const value *v, const char *text,
+static void judge_refusal(const extreme_family *f, const extreme_value *v, const char *text,
                           uint32_t threads, extreme_result *out)
 {
     fl_diags diags = {0};
@@ -335,7 +276,7 @@ static void judge_refusal(const extreme_family *f, const value *v, const char *t
     fl_diags_deinit(&diags);
 }
 
-static void judge_rays(const extreme_family *f, const value *v, extreme_result *out)
+static void judge_rays(const extreme_family *f, const extreme_value *v, extreme_result *out)
 {
     extreme_aim aim = {.objects = f->text,
                        .scale = field(v, 0),
@@ -346,15 +287,15 @@ static void judge_rays(const extreme_family *f, const value *v, extreme_result *
         snprintf(out->note, sizeof out->note, "no memory");
 }
 
-static extreme_result judge(suite *s, const extreme_family *f, const value *v)
+static extreme_result judge(suite *s, const extreme_family *f, const extreme_value *v)
 {
-    char text[TEXT_MAX];
+    char text[EXTREME_TEXT_MAX];
     extreme_result r = {0};
     if (f->judge == EXTREME_RAYS) {
         judge_rays(f, v, &r);
         return r;
     }
-    fill(f->text, v, text);
+    extreme_text(f, v, text);
     if (f->judge == EXTREME_REFUSED)
         judge_refusal(f, v, text, s->threads, &r);
     else if (f->judge == EXTREME_COUNTED)
@@ -369,7 +310,7 @@ static extreme_result judge(suite *s, const extreme_family *f, const value *v)
 /* --- The table ---------------------------------------------------------------------------------
  */
 
-static void name_value(const extreme_family *f, const value *v, char *out, size_t bytes)
+static void name_value(const extreme_family *f, const extreme_value *v, char *out, size_t bytes)
 {
     if (f->judge == EXTREME_RAYS) {
         snprintf(out, bytes, "scale %s, %s%s%s%s, %s rays", v->fields[0],
@@ -432,9 +373,9 @@ static uint32_t count_rows(bool is_thorough)
 static void run_family(suite *s, const extreme_family *f)
 {
     for (const char *const *text = f->values; *text && !cli_was_interrupted(); text++) {
-        value v;
+        extreme_value v;
         char name[96];
-        value_read(f, *text, &v);
+        extreme_value_read(f, *text, &v);
         if (v.is_slow && !s->is_thorough)
             continue;
         name_value(f, &v, name, sizeof name);

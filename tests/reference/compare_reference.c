@@ -1,16 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
  * compare_reference [--samples N] [--size N] [--random] [--exact] [--seed N]
- *                   [--accel bvh|octree|none] [--double] [--pixel X Y] [SCENE ...]
+ *                   [--accel bvh|octree|none] [--double] [--pixel X Y] [--extremes | SCENE ...]
  *
  * Renders each scene with the renderer and with the reference at the same sample points and
  * compares the means of each pixel. A scene agrees when at least 99.9 % of its pixels, excused ones
  * included, differ by at most 1/1024 in every channel. A differing pixel is excused if moving the
  * camera rays of its samples by at most 1e-5 of their length brings the reference within that; at
- * most ten a scene. With --double the renderer traces in double and the bounds are 1/100000 and 1e-9.
- * Scenes named exact_*, or all with --exact, follow their dialect's own rules.
- * Without scenes: all of scenes/, scenes/course/ and tests/reference/scenes/. --pixel shows one
- * pixel's samples. Exit status 0: all agree; 1: not; 2: wrong use.
+ * most ten a scene. With --double the renderer traces in double and the bounds are 1/100000 and
+ * 1e-9. Scenes named exact_*, or all with --exact, follow their dialect's own rules. Without
+ * scenes: all of scenes/, scenes/course/ and tests/reference/scenes/. With --extremes: the rows of
+ * `firstlight study --extremes` that are judged by double there, in double here, where the bounds
+ * are parts of the picture's root mean square if that is above 1. --pixel shows one pixel's
+ * samples. Exit status 0: all agree; 1: not; 2: wrong use.
  */
 #include <glob.h>
 #include <math.h>
@@ -19,6 +21,7 @@
 #include <string.h>
 #include <time.h>
 
+#include "cli/extremes.h"
 #include "core/firstlight.h"
 #include "io/files.h"
 #include "reference.h"
@@ -29,7 +32,7 @@ static double tolerance = 1.0 / 1024.0, nudge_max = 1e-5; /* smaller with --doub
 
 typedef struct options {
     uint32_t samples, size, seed;
-    bool is_random, is_exact, is_double, has_pixel;
+    bool is_random, is_exact, is_double, is_extreme, has_pixel;
     uint32_t pixel[2];
     fl_accel accel;
 } options;
@@ -54,17 +57,25 @@ static void print_diags(const fl_diags *diags)
     }
 }
 
-static bool contest_open(contest *c, const options *o, const char *path)
+static fl_scene *parse_file(const char *path, fl_diags *diags)
+{
+    size_t bytes;
+    char *text =
+        fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path}, diags, &bytes);
+    fl_scene *scene =
+        text ? fl_scene_parse(text, bytes, path, &(fl_parse_options){0}, &fl_files_on_disk, diags)
+             : NULL;
+    free(text);
+    return scene;
+}
+
+/* `text`: of a row of extremes; NULL: what the file holds. */
+static bool contest_open(contest *c, const options *o, const char *path, const char *text)
 {
     *c = (contest){.path = path, .samples = o->samples};
-    size_t bytes;
-    char *text = fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){.file = path},
-                              &c->diags, &bytes);
-    if (!text)
-        return false;
-    fl_parse_options parse = {0};
-    c->scene = fl_scene_parse(text, bytes, path, &parse, &fl_files_on_disk, &c->diags);
-    free(text);
+    c->scene = text ? fl_scene_parse(text, strlen(text), path, &(fl_parse_options){0},
+                                     &extreme_files, &c->diags)
+                    : parse_file(path, &c->diags);
     if (!c->scene)
         return false;
     const char *slash = strrchr(path, '/');
@@ -78,7 +89,7 @@ static bool contest_open(contest *c, const options *o, const char *path)
         c->params.precision = FL_PRECISION_DOUBLE;
     if (o->is_random)
         c->params.sampler = FL_SAMPLER_RANDOM;
-    fl_compile_options compile = {.accel = o->accel};
+    fl_compile_options compile = {.accel = o->accel, .in_double = o->is_double};
     c->compiled = fl_compile(c->scene, &compile, NULL, &c->diags);
     fl_render_options render = {0};
     c->render = c->compiled ? fl_render_create(&render, &c->diags) : NULL;
@@ -199,11 +210,23 @@ static ref_vec reference_pixel(const contest *c, uint32_t x, uint32_t y)
     return (ref_vec){sum.x / n, sum.y / n, sum.z / n};
 }
 
+/* Colours of extremes may be huge, and differences are in parts of what is seen. */
+static double picture_scale(const float *rgb, size_t floats)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < floats; i++)
+        sum += (double)rgb[i] * (double)rgb[i];
+    return fmax(1.0, sqrt(sum / (double)floats));
+}
+
 static bool contest_judge(contest *c, const options *o)
 {
+    const double plain_tolerance = tolerance;
     size_t floats = (size_t)3 * o->size * o->size;
     float *mean = malloc(floats * sizeof *mean);
     bool ok = mean && render_mean(c, NULL, c->samples, mean, floats);
+    if (ok && o->is_extreme)
+        tolerance *= picture_scale(mean, floats);
     uint32_t differing = 0, excused = 0;
     double worst = 0.0, worst_agreeing = 0.0;
     clock_t begin = clock();
@@ -219,6 +242,7 @@ static bool contest_judge(contest *c, const options *o)
                 excused += examine(c, (uint32_t[]){x, y}, differing <= LISTED_MAX);
         }
     free(mean);
+    tolerance = plain_tolerance;
     if (!ok)
         return false;
     double pixels = (double)o->size * o->size;
@@ -233,10 +257,10 @@ static bool contest_judge(contest *c, const options *o)
     return ok;
 }
 
-static bool compare(const options *o, const char *path)
+static bool compare(const options *o, const char *path, const char *text)
 {
     contest c;
-    bool ok = contest_open(&c, o, path);
+    bool ok = contest_open(&c, o, path, text);
     if (!ok)
         printf("FAIL %s: cannot be opened\n", path);
     else if (o->has_pixel)
@@ -245,6 +269,33 @@ static bool compare(const options *o, const char *path)
         ok = contest_judge(&c, o);
     contest_close(&c);
     return ok;
+}
+
+/* Rows judged by double, and the scene that others scale; returns how many, and how many differ.
+ * Not those that are judged by their mean: from 1e6 away the reference's quadratic has 1e-4 left.
+ */
+static int compare_extremes(const options *o, int *failures)
+{
+    int count = 0;
+    for (uint32_t i = 0; i < extreme_family_count; i++) {
+        const extreme_family *f = &extreme_families[i];
+        bool is_one = f->judge == EXTREME_SCALED;
+        bool is_judged = is_one || f->judge == EXTREME_DOUBLE;
+        for (const char *const *text = f->values; is_judged && *text; text++) {
+            if (is_one && text != f->values)
+                break;
+            char scene[EXTREME_TEXT_MAX], name[320];
+            extreme_value v;
+            extreme_value_read(f, *text, &v);
+            if (v.is_slow)
+                continue;
+            extreme_text(f, &v, scene);
+            snprintf(name, sizeof name, "%s: %s", f->name, v.text);
+            *failures += !compare(o, name, scene);
+            count++;
+        }
+    }
+    return count;
 }
 
 static uint32_t number(const char *text)
@@ -271,8 +322,9 @@ static bool read_options(int argc, char **argv, options *o, int *out_first)
             o->is_random = true;
         } else if (strcmp(argv[i], "--exact") == 0) {
             o->is_exact = true;
-        } else if (strcmp(argv[i], "--double") == 0) {
+        } else if (strcmp(argv[i], "--double") == 0 || strcmp(argv[i], "--extremes") == 0) {
             o->is_double = true;
+            o->is_extreme |= argv[i][2] == 'e';
             tolerance = 1e-5;
             nudge_max = 1e-9;
         } else if (strcmp(argv[i], "--pixel") == 0 && i + 2 < argc) {
@@ -306,14 +358,16 @@ int main(int argc, char **argv)
         return 2;
     }
     for (int i = first; i < argc; i++, count++)
-        failures += !compare(&o, argv[i]);
-    if (first == argc) {
+        failures += !compare(&o, argv[i], NULL);
+    if (o.is_extreme) {
+        count = compare_extremes(&o, &failures);
+    } else if (first == argc) {
         glob_t found = {0};
         glob(FL_SOURCE_DIR "/scenes/*.txt", 0, NULL, &found);
         glob(FL_SOURCE_DIR "/scenes/course/*.txt", GLOB_APPEND, NULL, &found);
         glob(FL_SOURCE_DIR "/tests/reference/scenes/*.txt", GLOB_APPEND, NULL, &found);
         for (size_t i = 0; i < found.gl_pathc; i++, count++)
-            failures += !compare(&o, found.gl_pathv[i]);
+            failures += !compare(&o, found.gl_pathv[i], NULL);
         globfree(&found);
     }
     printf("%d scenes, %d failed\n", count, failures);

@@ -128,11 +128,17 @@ static double choose(uint32_t n, uint32_t k)
     return c;
 }
 
+/* What a level ray is tilted by, 0 otherwise: F says nothing about it. */
+static double tilt_of(ref_vec d)
+{
+    double level = 1e-7 * length(d);
+    return fabs(d.y) < level ? level : 0.0;
+}
+
 static void meet_revolution(const ref_shape *s, ray r, hit *best)
 {
-    double level = 1e-7 * length(r.d); /* a level ray is tilted by 1e-7: F says nothing about it */
-    if (fabs(r.d.y) < level)
-        r.d.y = copysign(level, r.d.y);
+    if (tilt_of(r.d) > 0.0)
+        r.d.y = copysign(tilt_of(r.d), r.d.y);
     for (uint32_t part = 0; part < s->segment_count; part++) {
         const ref_segment *p = &s->segments[part];
         uint32_t n = p->degree;
@@ -456,8 +462,11 @@ static ref_vec trace(const sample *s, ray r, uint32_t depth, uint32_t path, ref_
         at.ns = n;
     if (scene->black_back_faces && !enters)
         return vec(0, 0, 0);
-    /* Rounding of the hit point, with room; what is nearer than that is the surface itself. */
-    double t_min = 1e-10 * (length(r.o) + fabs(h.t) * length(r.d));
+    /* Rounding of the hit point, with room; what is nearer than that is the surface itself. Where
+     * a tilted ray met it, that is off by the tilt. */
+    bool is_tilted =
+        h.shape->kind == REF_REVOLUTION && tilt_of(transform(h.shape->to_object, r.d, 0.0)) > 0.0;
+    double t_min = (is_tilted ? 1e-6 : 1e-10) * (length(r.o) + fabs(h.t) * length(r.d));
     ref_vec diffuse = diffuse_of(h.shape, &at);
     ref_vec sum = times(m->has_ambient ? m->ambient : diffuse, scene->ambient);
     for (uint32_t i = 0; i < scene->light_count; i++)
