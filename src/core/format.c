@@ -205,6 +205,12 @@ static void put_meaning(printer *p, const fl_node *node, const fl_material *mate
         put_text(p, "texture ");
         put_text(p, p->scene->images[material->image].path); /* as written: no files were looked for */
     }
+    if (material->texture_scale[0] != 1.0 || material->texture_scale[1] != 1.0)
+        put_key(p, "textureScale", material->texture_scale, 2);
+    if (material->filter != FL_FILTER_BILINEAR) {
+        begin_line(p, false);
+        put_text(p, "filter nearest");
+    }
     if (bump) {
         begin_line(p, false);
         put_text(p, "# bump ");
