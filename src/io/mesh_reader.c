@@ -20,6 +20,16 @@
 #define MEMORY_PER_BYTE ((rlim_t)32)
 enum { SECONDS_BASE = 5, BYTES_PER_SECOND = 1 << 20 };
 
+/* Sanitizers map more than any limit; and what crashes must end as it does without them. */
+#if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
+#define FL_HAS_SHADOW
+const char *__asan_default_options(void);
+const char *__asan_default_options(void)
+{
+    return "handle_segv=0:abort_on_error=1:detect_leaks=0";
+}
+#endif
+
 static void limit(int what, rlim_t most)
 {
     const struct rlimit both = {most, most + 1}; /* the signal first, which says why */
@@ -28,7 +38,7 @@ static void limit(int what, rlim_t most)
 
 static void limit_all(size_t bytes)
 {
-#ifndef __SANITIZE_ADDRESS__ /* whose shadow is larger than any limit */
+#ifndef FL_HAS_SHADOW
     limit(RLIMIT_AS, MEMORY_BASE + MEMORY_PER_BYTE * bytes);
 #endif
     limit(RLIMIT_CPU, SECONDS_BASE + bytes / BYTES_PER_SECOND);
