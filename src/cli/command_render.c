@@ -31,14 +31,14 @@ static bool print_json(const cli_scene *scene, const cli_picture *picture, doubl
     for (uint32_t i = 0; i < FL_COST_COUNT; i++)
         json_object_set_new(costs, fl_cost_names[i], json_real(p->cost_seconds[i]));
     json_t *line = json_pack(
-        "{s:o, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:o, s:s, s:s, s:b, s:s, s:f}", "scene",
+        "{s:o, s:i, s:i, s:i, s:i, s:f, s:f, s:f, s:f, s:o, s:{s:I, s:I, s:I, s:I}, s:o, s:I, s:I, s:I, s:o, s:s, s:s, s:b, s:s, s:f}", "scene",
         cli_json_text(scene->path), "width", (int)picture->width, "height", (int)picture->height, "samples", (int)cli_picture_samples(picture),
         "light_samples", (int)scene->params.light_samples,
         "seconds", p->seconds, "cpu_seconds", p->cpu_seconds, "first_picture_seconds", p->first_picture_seconds,
         "first_sample_seconds", p->first_sample_seconds, "stage_seconds", costs, "rays", "camera", (json_int_t)c->camera_rays, "shadow",
         (json_int_t)c->shadow_rays, "reflect", (json_int_t)c->reflect_rays, "refract", (json_int_t)c->refract_rays,
         "rmse", rmse, "invalid_samples", (json_int_t)c->invalid_samples, "dropped_branches",
-        (json_int_t)c->dropped_branches, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "precision",
+        (json_int_t)c->dropped_branches, "stopped_shadow_rays", (json_int_t)c->stopped_shadow_rays, "needs", needs, "isa", fl_isa_name(scene->compiled->isa), "precision",
         scene->params.precision == FL_PRECISION_DOUBLE ? "double" : "float", "interrupted",
         (int)picture->was_interrupted, "film_sha256", picture->film_sha256,
         "load_seconds", scene->load_seconds);
@@ -71,6 +71,9 @@ static void print_summary(const cli_picture *picture, double target)
         printf(", %llu INVALID samples dropped", (unsigned long long)c->invalid_samples);
     if (c->dropped_branches)
         printf(", %llu branches dropped", (unsigned long long)c->dropped_branches);
+    if (c->stopped_shadow_rays)
+        printf(", %llu shadow rays stopped after %d surfaces", (unsigned long long)c->stopped_shadow_rays,
+               FL_SHADOW_SURFACES_MAX);
     putchar('\n');
 }
 

@@ -211,8 +211,8 @@ static bool set_params(const cli_options *options, cli_scene *out)
 {
     fl_params own;
     fl_params_from_scene(&own, out->scene, out->state.is_exact || cli_has(options, CLI_OPT_DIALECT_EXACT));
-    if (out->state.scene_path)
-        fl_saved_state_apply(&out->state, out->scene, &own);
+    if (out->state.scene_path && !fl_saved_state_apply(&out->state, out->scene, &own))
+        return fl_out_of_memory(out->diags, "the lights of the saved picture");
     own.strata = cli_sample_limit(&(cli_options){0}, out);
     out->params = own;
     apply_options(options, &out->params);

@@ -2,6 +2,7 @@
  *
  * The program: find the command, parse its options, run it. The only place that turns results into exit codes.
  */
+#include <errno.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -47,11 +48,8 @@ static cli_command_id command_of(int argc, char **argv, int *skip)
     return command;
 }
 
-int main(int argc, char **argv)
+static int run_words(int argc, char **argv)
 {
-    /* A file size limit is a full disk: the write fails and says so, the program lives. */
-    signal(SIGXFSZ, SIG_IGN);
-    signal(SIGPIPE, SIG_IGN);
     if (argc == 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
         cli_print_help(CLI_COMMAND_COUNT);
         return CLI_DONE;
@@ -76,8 +74,19 @@ int main(int argc, char **argv)
         cli_print_help(command);
         return CLI_DONE;
     }
-    int code = run[command](&options);
-    if (fflush(stdout) != 0 && code == CLI_DONE)
-        code = CLI_ENVIRONMENT;
-    return code;
+    return run[command](&options);
+}
+
+int main(int argc, char **argv)
+{
+    /* A file size limit is a full disk: the write fails and says so, the program lives. */
+    signal(SIGXFSZ, SIG_IGN);
+    signal(SIGPIPE, SIG_IGN);
+    int code = run_words(argc, argv);
+    bool has_failed = ferror(stdout) != 0;
+    errno = 0;
+    if (fflush(stdout) == 0 && !has_failed)
+        return code;
+    fprintf(stderr, "firstlight: cannot write to standard output: %s\n", errno ? strerror(errno) : "not all of it got there");
+    return code == CLI_DONE ? CLI_ENVIRONMENT : code;
 }

@@ -53,6 +53,10 @@ typedef struct checkpoint {
 /* Seconds of rendering between two checkpoints: what a power cut may cost. */
 static const double keep_every_s = 60.0;
 
+/* Seconds that an interrupted render may take to bring all pixels to the same number of samples: the picture is then
+ * the one of so many, to the bit. */
+static const double even_out_s = 1.0;
+
 static bool keep(fl_render *render, checkpoint *kept, fl_diags *diags)
 {
     void *data;
@@ -115,6 +119,8 @@ static bool render_until_done(fl_render *render, const fl_render_limits *limits,
             break;
         if (cli_was_interrupted()) {
             out->was_interrupted = true;
+            fl_render_set_limits(render, &(fl_render_limits){.samples = fl_max_u32(out->progress.begun_samples, 1)});
+            fl_render_wait(render, even_out_s);
             fl_render_set_paused(render, true);
             break;
         }

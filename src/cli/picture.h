@@ -38,8 +38,9 @@ typedef struct cli_picture_plan {
     const char *checkpoint;    /**< File to go on from and to keep the render in; NULL: none. */
 } cli_picture_plan;
 
-/** Render with the scene's parameters until `limits` are met or a signal comes. False after adding an error, or a note
- *  when it was interrupted before there was a picture. */
+/** Render with the scene's parameters until `limits` are met or a signal comes: then all pixels get the same number of
+ *  samples, if that takes no more than a second. False after adding an error, or a note when it was interrupted before there
+ *  was a picture. */
 bool cli_picture_render(cli_scene *scene, const fl_render_limits *limits, const cli_picture_plan *plan,
                         cli_picture *out);
 

@@ -6,6 +6,7 @@
 #define FL_BVH_SPLIT_H
 
 #include "core/bvh.h"
+#include "core/mesh.h"
 
 /* x y z and one lane to spare, whatever the machine: the tree is the same everywhere. */
 #define FL_W 4
@@ -24,6 +25,7 @@ typedef struct item {
 
 /** Leaf indices have 28 bits. */
 enum { FL_BVH_ITEMS_MAX = 1 << 28 };
+_Static_assert((int)FL_FACES_MAX <= (int)FL_BVH_ITEMS_MAX, "every mesh that is read can be built");
 
 typedef struct range {
     uint32_t first, count;

@@ -8,6 +8,10 @@
 #include "core/compile.h"
 #include "core/octree.h"
 
+/** A limit as its definition is written, for messages. */
+#define FL_TEXT_OF(limit)  FL_TEXT_OF_(limit)
+#define FL_TEXT_OF_(limit) #limit
+
 typedef struct fl_compiler {
     const fl_scene *scene;
     const fl_compile_options *options;

@@ -97,9 +97,9 @@ static bool add_plane(fl_compiler *c, const fl_object *object, uint32_t at, uint
     if (baked)
         p->offset[k] -= fl_v3_dot(p->normal[k], c->geometry->origin);
     if (!(length > 0.0) || !(fabs(p->offset[k]) <= FL_COORDINATE_MAX))
-        return fl_error(
-            c->diags, object->loc,
-            "the plane's normal is 0, or it lies beyond 1e18 from the middle of the scene");
+        return fl_error(c->diags, object->loc,
+                        "the plane's normal is 0, or it lies beyond " FL_TEXT_OF(
+                            FL_COORDINATE_MAX) " from the middle of the scene");
     p->object[k] = at;
     split3(p->normal[k], &p->nx[k], &p->ny[k], &p->nz[k]);
     p->d[k] = (float)p->offset[k];

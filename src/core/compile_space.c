@@ -108,7 +108,8 @@ bool fl_compile_check_box(fl_compiler *c, fl_box box, fl_loc loc)
     if (fl_v3_is_finite(box.lo) && fl_v3_is_finite(box.hi) && box_largest(box) <= FL_COORDINATE_MAX)
         return true;
     return fl_error(c->diags, loc,
-                    "the object reaches beyond 1e18, too far for the renderer's floats");
+                    "the object reaches beyond " FL_TEXT_OF(
+                        FL_COORDINATE_MAX) ", too far for the renderer's floats");
 }
 
 /* Nearest multiple of `step`; halves go towards 0. */
@@ -258,8 +259,9 @@ bool fl_compile_instance(fl_compiler *c, const fl_object *object, uint32_t objec
     to_world = fl_affine_mul(&back, &to_world);
     *instance = (fl_instance){.kind = kind, .index = index, .object = object_index};
     if (!affine_fits(&to_world) || !fl_affine_invert(&to_world, &instance->to_object_exact))
-        return fl_error(c->diags, object->loc,
-                        "the object's transform flattens it or reaches beyond 1e18");
+        return fl_error(
+            c->diags, object->loc,
+            "the object's transform flattens it or reaches beyond " FL_TEXT_OF(FL_COORDINATE_MAX));
     if (!affine_fits(&instance->to_object_exact))
         return fl_error(c->diags, object->loc, "the object's transform shrinks it below 1e-18");
     instance->to_world_exact = to_world;

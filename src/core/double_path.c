@@ -10,8 +10,6 @@
 
 /* Shadow rays end this much, relatively, before the point on the light (kernel_shade.c). */
 #define SHADOW_END (1.0 - 0x1p-40)
-/* Surfaces that a transparent shadow ray may pass (pipeline_shadow.c). */
-enum { SURFACES_MAX = 1024 };
 
 /** A ray that waits for its level. */
 typedef struct branch {
@@ -141,7 +139,8 @@ static fl_vec3 occlude(path *p, fl_double_ray ray, fl_vec3 arrives)
     p->counts.shadow_rays++;
     if (!p->frame->params.transparent_shadows)
         return fl_double_any(g, &ray, &p->context) ? none : arrives;
-    for (int surfaces = 0; surfaces < SURFACES_MAX && !fl_is_cancelled(&p->context); surfaces++) {
+    for (int surfaces = 0; surfaces <= FL_SHADOW_SURFACES_MAX && !fl_is_cancelled(&p->context);
+         surfaces++) {
         if (!fl_double_nearest(g, &ray, &p->context, &hit))
             return arrives;
         arrives =
@@ -156,6 +155,7 @@ static fl_vec3 occlude(path *p, fl_double_ray ray, fl_vec3 arrives)
         if (!is_far)
             ray.d = fl_v3_sub(end, ray.o);
     }
+    p->counts.stopped_shadow_rays++;
     return none;
 }
 

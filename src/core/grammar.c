@@ -50,9 +50,10 @@ enum {
             "viewing direction, any length above 0"),                                              \
         NUM("up", UP, 3, ALL, REQ | FLT, ANY, "", NULL,                                            \
             "what is up in the picture; not along direction"),                                     \
-        TYPED(INTEGER, "width", WIDTH, 1, OURS, 0, TO(1, 16384), "pixels", NULL,                   \
+        TYPED(INTEGER, "width", WIDTH, 1, OURS, 0, TO(1, FL_SIDE_MAX), "pixels", NULL,             \
               "size of the picture; without it the command line decides, else 640"),               \
-        TYPED(INTEGER, "height", HEIGHT, 1, OURS, 0, TO(1, 16384), "pixels", NULL, "likewise"),    \
+        TYPED(INTEGER, "height", HEIGHT, 1, OURS, 0, TO(1, FL_SIDE_MAX), "pixels", NULL,           \
+              "likewise"),                                                                         \
         NUM("exposure", EXPOSURE, 1, OURS, 0, TO(-64, 64), "EV", "0",                              \
             "the shown picture is multiplied by 2^exposure")
 #define LENS_KEYS                                                                                  \
@@ -64,7 +65,7 @@ enum {
               "sides of the aperture polygon, 3 to 9; 0 is round"),                                \
         NUM("bladeRotation", BLADE_ROTATION, 1, OURS, 0, TO(-1e6, 1e6), "degrees", "0",            \
             "turn of that polygon")
-#define ANGLE_RANGE TO(0.01, 179)
+#define ANGLE_RANGE TO(FL_FOV_MIN_DEG, FL_FOV_MAX_DEG)
 
 static const fl_key perspective_keys[] = {
     PLACE_KEYS,

@@ -22,6 +22,12 @@ enum {
     FL_DEGREE_MAX = 15      /**< Of one Bezier curve. */
 };
 
+/** Memory that the meshes and pictures of a scene may take together, those of meshes with what is
+ * built over them: generous, so that every file that may be read alone can be. Bytes. */
+#define FL_SCENE_MEMORY_LIMIT ((uint64_t)32 << 30)
+/** Compiled form and hierarchy of a face, as measured (docs/performance.md). Bytes. */
+enum { FL_FACE_MEMORY_ESTIMATE = 86 };
+
 /** Sets of dialects are masks of 1 << fl_dialect. */
 enum {
     FL_IN_FIRSTLIGHT = 1 << FL_DIALECT_FIRSTLIGHT,

@@ -158,9 +158,11 @@ static void put_limits(const writer *w)
         "Limits: %d bytes of text, %d bytes a word, %d open braces, %d objects with groups and "
         "transforms, %d lights,\n%d materials, %d views, %d control points a curve, degree %d of "
         "one "
-        "Bezier curve, %d different meshes and %d pictures.\n",
+        "Bezier curve, %d different meshes and %d pictures,\n%d triangles a mesh; %ju bytes of "
+        "memory for meshes and pictures together.\n",
         FL_TEXT_BYTES_MAX, FL_WORD_BYTES_MAX, FL_NESTING_MAX, FL_OBJECTS_MAX, FL_LIGHTS_MAX,
-        FL_MATERIALS_MAX, FL_VIEWS_MAX, FL_CONTROLS_MAX, FL_DEGREE_MAX, FL_FILES_MAX, FL_FILES_MAX);
+        FL_MATERIALS_MAX, FL_VIEWS_MAX, FL_CONTROLS_MAX, FL_DEGREE_MAX, FL_FILES_MAX, FL_FILES_MAX,
+        FL_FACES_MAX, (uintmax_t)FL_SCENE_MEMORY_LIMIT);
     put(w, text);
 }
 

@@ -9,6 +9,9 @@
 #include "core/ref.h"
 #include "core/vec.h"
 
+/** Most faces of a mesh: what its hierarchies can number. */
+enum { FL_FACES_MAX = 1 << 28 };
+
 /** Three corners of a face; each an index into the mesh's arrays, FL_NONE where the file gives none. */
 typedef struct fl_face {
     uint32_t position[3];

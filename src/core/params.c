@@ -170,10 +170,11 @@ static bool check_camera(const fl_params *p, fl_diags *diags)
 {
     const fl_camera *c = &p->camera;
     bool is_fine = check_lens(c, diags);
-    if (c->projection == FL_PERSPECTIVE && !(c->fov_deg >= 0.01 && c->fov_deg <= 179.0))
+    if (c->projection == FL_PERSPECTIVE &&
+        !(c->fov_deg >= FL_FOV_MIN_DEG && c->fov_deg <= FL_FOV_MAX_DEG))
         is_fine =
-            fl_error(diags, nowhere, "the field of view must be from 0.01 to 179 degrees, got %g",
-                     c->fov_deg);
+            fl_error(diags, nowhere, "the field of view must be from %g to %g degrees, got %g",
+                     FL_FOV_MIN_DEG, FL_FOV_MAX_DEG, c->fov_deg);
     if (c->projection == FL_ORTHOGRAPHIC && !(c->ortho_size > 0.0 && is_float(c->ortho_size)))
         is_fine =
             fl_error(diags, nowhere, "the 'size' of the view must be above 0 and finite, got %g",

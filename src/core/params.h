@@ -85,7 +85,6 @@ enum {
     FL_DEPTH_MAX = 64,
     FL_DEPTH_DEFAULT = 5,
     FL_LIGHT_SAMPLES_MAX = 1 << 20,
-    FL_SIDE_MAX = 16384,   /**< Largest width or height, pixels. */
     FL_SIZE_DEFAULT = 640, /**< Of a scene that has no size. */
     FL_SAMPLES_DEFAULT = 64
 };

@@ -19,8 +19,10 @@ typedef struct fl_builder {
     const char *text; /**< To quote from again after a file was read. */
     size_t text_bytes;
     const char **mesh_references,
-        **image_references;    /**< As written, beside scene->meshes and images. */
-    uint32_t material;         /**< The current MaterialIndex; FL_NONE before the first. */
+        **image_references; /**< As written, beside scene->meshes and images. */
+    uint64_t
+        file_bytes;    /**< In memory, of meshes and pictures so far, with what meshes will need. */
+    uint32_t material; /**< The current MaterialIndex; FL_NONE before the first. */
     uint32_t default_material; /**< FL_NONE until an object needs it. */
 } fl_builder;
 

@@ -37,6 +37,47 @@ static void quote_scene(fl_builder *b)
     fl_diags_set_text(b->diags, b->tree->name, b->text, b->text_bytes);
 }
 
+/* Room for the meshes and pictures there are; once it is gone no more are read. */
+static bool has_room(const fl_builder *b)
+{
+    return b->file_bytes <= FL_SCENE_MEMORY_LIMIT;
+}
+
+static bool take_room(fl_builder *b, uint64_t bytes, const char *path, fl_loc loc)
+{
+    b->file_bytes += bytes;
+    return has_room(b) ||
+           fl_error(b->diags, loc,
+                    "with '%s' the meshes and pictures of the scene need %ju bytes of memory, at "
+                    "most %ju",
+                    path, (uintmax_t)b->file_bytes, (uintmax_t)FL_SCENE_MEMORY_LIMIT);
+}
+
+static fl_mesh *load_mesh(fl_builder *b, const char *path, fl_loc loc)
+{
+    fl_mesh *mesh = b->files->load_mesh(b->files->context, path, loc, b->diags);
+    if (!mesh)
+        return NULL;
+    uint64_t bytes = fl_mesh_bytes(mesh) + (uint64_t)mesh->face_count * FL_FACE_MEMORY_ESTIMATE;
+    bool fits = mesh->face_count <= FL_FACES_MAX
+                    ? take_room(b, bytes, path, loc)
+                    : fl_error(b->diags, loc, "mesh '%s' is too large: %u triangles, at most %d",
+                               path, mesh->face_count, FL_FACES_MAX);
+    if (fits)
+        return mesh;
+    fl_mesh_release(mesh);
+    return NULL;
+}
+
+static fl_image *load_image(fl_builder *b, const char *path, fl_loc loc)
+{
+    fl_image *image = b->files->load_image(b->files->context, path, loc, b->diags);
+    if (!image || take_room(b, fl_image_bytes(image), path, loc))
+        return image;
+    fl_image_release(image);
+    return NULL;
+}
+
 static uint32_t find_name(const char *const *names, uint32_t count, const char *name)
 {
     for (uint32_t i = 0; i < count; i++)
@@ -70,8 +111,8 @@ uint32_t fl_build_mesh_file(fl_builder *b, const fl_node *key)
     fl_scene_mesh mesh = {.path = copy_text(b, path, strlen(path)), .loc = loc};
     if (!mesh.path)
         return FL_NONE;
-    if (b->files && path[0])
-        mesh.mesh = b->files->load_mesh(b->files->context, mesh.path, loc, b->diags);
+    if (b->files && path[0] && has_room(b))
+        mesh.mesh = load_mesh(b, mesh.path, loc);
     quote_scene(b);
     b->mesh_references[index] = reference;
     scene->meshes[index] = mesh;
@@ -94,8 +135,8 @@ static uint32_t add_image(fl_builder *b, const char *reference, const char *path
     fl_scene_image image = {.path = copy_text(b, path, strlen(path)), .loc = loc};
     if (!image.path)
         return FL_NONE;
-    if (b->files && path[0])
-        image.image = b->files->load_image(b->files->context, image.path, loc, b->diags);
+    if (b->files && path[0] && has_room(b))
+        image.image = load_image(b, image.path, loc);
     quote_scene(b);
     b->image_references[index] = reference;
     scene->images[index] = image;

@@ -27,6 +27,7 @@ void fl_counts_add(fl_counts *sum, const fl_counts *part)
     sum->reflect_rays += part->reflect_rays;
     sum->refract_rays += part->refract_rays;
     sum->dropped_branches += part->dropped_branches;
+    sum->stopped_shadow_rays += part->stopped_shadow_rays;
     sum->sample_dimensions += part->sample_dimensions;
     sum->texture_lookups += part->texture_lookups;
     add_isect(&sum->isect, &part->isect);

@@ -12,7 +12,12 @@
 
 enum {
     FL_UNIT_PIXELS = 1024, /**< Largest unit. */
-    FL_PENDING_MAX = 64 /**< Pending rays a sample; beyond, the lightest are dropped and counted. */
+    FL_PENDING_MAX =
+        64, /**< Pending rays a sample; beyond, the lightest are dropped and counted. */
+    FL_SHADOW_SURFACES_MAX = 1024 /**< That a shadow ray passes where shadows are transparent. One
+                                     that meets more counts as blocked, and is counted: it bounds
+                                     the time of rays that creep along surfaces below the resolution
+                                     of their coordinates. */
 };
 
 /** Sample `sample` of `count` pixels (absolute coordinates, any order). */
@@ -33,8 +38,9 @@ typedef struct fl_unit_result {
 typedef struct fl_counts {
     uint64_t samples, invalid_samples;
     uint64_t camera_rays, shadow_rays, reflect_rays, refract_rays;
-    uint64_t dropped_branches;  /**< By FL_PENDING_MAX. */
-    uint64_t sample_dimensions; /**< Drawn. */
+    uint64_t dropped_branches;    /**< By FL_PENDING_MAX. */
+    uint64_t stopped_shadow_rays; /**< By FL_SHADOW_SURFACES_MAX. */
+    uint64_t sample_dimensions;   /**< Drawn. */
     uint64_t texture_lookups;
     fl_isect_counts isect;   /**< Of all rays. */
     fl_isect_counts occlude; /**< Of shadow rays alone. */

@@ -3,10 +3,6 @@
 
 #include <math.h>
 
-/* A shadow ray that met more surfaces than this counts as blocked: it only bounds the time of a ray
- * that creeps along surfaces below the resolution of its coordinates. */
-enum { SURFACES_MAX = 1024 };
-
 static void block(fl_shadow *shadow, uint32_t i)
 {
     shadow->arrives.x[i] = shadow->arrives.y[i] = shadow->arrives.z[i] = 0.0f;
@@ -101,7 +97,7 @@ static bool occlude_transparent(fl_pipe *pipe)
         work->end.z[i] = from->oz[i] + from->dz[i];
     }
     rays->count = from->count;
-    for (int surfaces = 0; rays->count > 0 && surfaces < SURFACES_MAX; surfaces++) {
+    for (int surfaces = 0; rays->count > 0 && surfaces <= FL_SHADOW_SURFACES_MAX; surfaces++) {
         fl_rays_pad(rays);
         pipe->isect->nearest(geometry, rays, &work->through_hits, &pipe->context);
         if (fl_is_cancelled(&pipe->context))
@@ -118,6 +114,7 @@ static bool occlude_transparent(fl_pipe *pipe)
     }
     for (uint32_t i = 0; i < rays->count; i++)
         block(&work->shadow, work->through.at[i]);
+    pipe->counts.stopped_shadow_rays += rays->count;
     return true;
 }
 

@@ -4,7 +4,7 @@
 #include "core/render_state.h"
 
 /* Changes whenever what a job packs does. */
-static const uint32_t pack_version = 1;
+static const uint32_t pack_version = 2;
 
 static void pack_job(fl_job *job, fl_pack *pack)
 {

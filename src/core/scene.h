@@ -27,6 +27,11 @@ typedef enum fl_dialect {
     FL_DIALECT_COUNT
 } fl_dialect;
 
+enum { FL_SIDE_MAX = 16384 }; /**< Largest width or height of a picture, pixels. */
+/** Least and largest field of view, degrees. */
+#define FL_FOV_MIN_DEG 0.01
+#define FL_FOV_MAX_DEG 179.0
+
 typedef enum fl_projection { FL_PERSPECTIVE, FL_ORTHOGRAPHIC } fl_projection;
 
 /** Camera with its lens: lens values belong to the camera, so bookmarks and snapshots carry them.
@@ -36,7 +41,7 @@ typedef struct fl_camera {
     fl_vec3 center;
     fl_vec3 direction; /**< Any length above 0. */
     fl_vec3 up;        /**< Re-orthogonalised against `direction`; must not be parallel to it. */
-    double fov_deg;    /**< Vertical, full angle, in [0.01, 179]. */
+    double fov_deg;    /**< Vertical, full angle, FL_FOV_MIN_DEG to FL_FOV_MAX_DEG. */
     double ortho_size; /**< Orthographic: height of the view, scene units. */
     double aperture;   /**< Lens radius, scene units, >= 0; 0 is a pinhole. */
     double focus;      /**< Distance of the focus plane along `direction`, > 0 or +inf. */

@@ -17,6 +17,8 @@
 /* Names tried for the file written beside the target before giving up: a name is only taken when an
  * earlier process of the same number died in between. */
 enum { TEMP_NAMES_MAX = 100 };
+/* Links followed one after the other, as many as the system itself follows. */
+enum { LINKS_MAX = 40 };
 
 static bool find(void *context, const char *scene_path, const char *reference, char *out_path,
                  size_t out_bytes)
@@ -180,23 +182,45 @@ static void sync_folder(const char *target)
     close(file);
 }
 
+/* Where a path that leads to no file ends, behind all links: there the file is made, as by open.
+ * False with errno set. */
+static bool find_end(const char *path, char out_end[PATH_MAX])
+{
+    char link[PATH_MAX];
+    struct stat status;
+    int length = snprintf(out_end, PATH_MAX, "%s", path);
+    for (int links = 0; length >= 0 && length < PATH_MAX; links++) {
+        if (lstat(out_end, &status) != 0)
+            return errno == ENOENT;
+        if (!S_ISLNK(status.st_mode))
+            return true;
+        ssize_t bytes = readlink(out_end, link, sizeof link - 1);
+        if (bytes < 0 || links == LINKS_MAX) {
+            errno = bytes < 0 ? errno : ELOOP;
+            return false;
+        }
+        link[bytes] = '\0';
+        int folder = link[0] == '/' ? 0 : folder_bytes(out_end);
+        length = folder + snprintf(out_end + folder, (size_t)(PATH_MAX - folder), "%s", link);
+    }
+    errno = ENAMETOOLONG;
+    return false;
+}
+
 bool fl_file_save(const char *path, const void *data, size_t bytes, fl_diags *diags)
 {
-    char resolved[PATH_MAX], temp_path[PATH_MAX];
-    const char *target = path;
-    mode_t mode = 0666;
+    char target[PATH_MAX], temp_path[PATH_MAX];
     struct stat status;
-    if (stat(path, &status) == 0) {
-        if (!S_ISREG(status.st_mode))
-            return fl_environment_error(diags, "cannot write '%s': it is not a regular file", path);
-        if (!realpath(path, resolved) || access(resolved, W_OK) != 0)
-            return fl_environment_error(diags, "cannot write '%s': %s", path, strerror(errno));
-        target = resolved;
-        mode = status.st_mode & 0777;
-    }
-    int file = create_beside(target, mode, temp_path);
+    bool is_there = stat(path, &status) == 0;
+    if (is_there && !S_ISREG(status.st_mode))
+        return fl_environment_error(diags, "cannot write '%s': it is not a regular file", path);
+    bool has_target = is_there ? realpath(path, target) && access(target, W_OK) == 0
+                               : errno == ENOENT && find_end(path, target);
+    int file = has_target ? create_beside(target, is_there ? 0600 : 0666, temp_path) : -1;
     if (file < 0)
         return fl_environment_error(diags, "cannot write '%s': %s", path, strerror(errno));
+    if (is_there) /* Where permissions cannot be set, they are not worth the picture. */
+        (void)!fchmod(file, status.st_mode & 0777);
     bool is_written = write_all(file, data, bytes) && fsync(file) == 0;
     int reason = errno;
     if (close(file) != 0 && is_written) {

@@ -8,8 +8,8 @@
 
 #include "core/firstlight.h"
 
-/** Largest scene text that is read; generous, a scene of 100,000 objects has 20 MB. */
-#define FL_SCENE_FILE_MAX_BYTES ((size_t)256 << 20)
+/** Largest scene text that is read. */
+#define FL_SCENE_FILE_MAX_BYTES ((size_t)FL_TEXT_BYTES_MAX)
 
 /** How many folders above the scene's own are searched for a file that it names. */
 enum { FL_FILES_PARENTS_MAX = 6 };
@@ -32,8 +32,9 @@ char *fl_file_load(const char *path, const char *what, size_t max_bytes, fl_loc 
 
 /** Put `bytes` bytes at `path`, all or nothing: written to a new file in the same folder,
  * synchronised, renamed. A file that stood there keeps its permissions, and its content if anything
- * fails. Through a symbolic link the file it points to is replaced. False after adding an
- * environment error; nothing is left behind. */
+ * fails. A symbolic link stays: what it leads to is replaced, or made if there is nothing yet; one
+ * that leads round in a circle is an error. False after adding an environment error; nothing is
+ * left behind. */
 bool fl_file_save(const char *path, const void *data, size_t bytes, fl_diags *diags);
 
 #endif

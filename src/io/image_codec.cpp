@@ -189,37 +189,42 @@ std::string description_line(const fl_image_text &text)
     return line + "\n";
 }
 
-char *find_in_description(const std::string &description, const std::string &key)
+// False: there is none.
+bool find_in_description(const std::string &description, const std::string &key, std::string &value)
 {
     std::string start = key + "=";
     for (size_t at = 0; at < description.size();) {
         size_t end = description.find('\n', at);
         end = end == std::string::npos ? description.size() : end;
         if (description.compare(at, start.size(), start) == 0) {
-            std::string value;
             for (size_t i = at + start.size(); i < end; i++) {
                 bool is_escape = description[i] == '\\' && i + 1 < end;
                 i += is_escape;
                 value += is_escape && description[i] == 'n' ? '\n' : description[i];
             }
-            return copy_text(value);
+            return true;
         }
         at = end + 1;
     }
-    return nullptr;
+    return false;
 }
 
-char *find_text(void *opaque, const char *key) noexcept
+bool find_text(void *opaque, const char *key, char **out_text) noexcept
 {
+    *out_text = nullptr;
     try {
         const OIIO::ImageSpec &spec = static_cast<reader *>(opaque)->input->spec();
         const OIIO::ParamValue *found = spec.find_attribute(key, OIIO::TypeDesc::STRING);
+        std::string value;
         if (found)
-            return copy_text(found->get_string());
-        return find_in_description(std::string(spec.get_string_attribute("ImageDescription")), key);
+            value = found->get_string();
+        else if (!find_in_description(std::string(spec.get_string_attribute("ImageDescription")),
+                                      key, value))
+            return true;
+        *out_text = copy_text(value);
     } catch (...) {
-        return nullptr;
     }
+    return *out_text != nullptr;
 }
 
 void close_reader(void *opaque) noexcept

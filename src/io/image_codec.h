@@ -52,8 +52,8 @@ typedef struct fl_codec {
     /** Read all pixels as RGB of the header's sample type: grey is spread, alpha and the rest
      * dropped. */
     bool (*read)(void *reader, void *out_rgb, char message[FL_CODEC_MESSAGE_BYTES]);
-    /** The text stored under `key`, from malloc; NULL: none, or out of memory. */
-    char *(*find_text)(void *reader, const char *key);
+    /** The text stored under `key`, from malloc; NULL: none. False: out of memory. */
+    bool (*find_text)(void *reader, const char *key, char **out_text);
     void (*close)(void *reader);
     /** Encode into memory from malloc, the caller's to free. */
     bool (*encode)(const fl_codec_picture *picture, const fl_image_text *texts, size_t text_count,

@@ -165,9 +165,9 @@ bool fl_image_load_text(const char *path, const char *key, fl_loc loc, fl_diags 
     void *reader = open_image(path, loc, diags, &from, &header, &bytes);
     if (!reader)
         return false;
-    *out_text = from->find_text(reader, key);
+    bool is_read = from->find_text(reader, key, out_text);
     from->close(reader);
-    return true;
+    return is_read || fl_out_of_memory(diags, path);
 }
 
 /* ---- Writing ---- */

@@ -303,20 +303,24 @@ bool fl_saved_state_is_for(const char *path)
     return false;
 }
 
-/* The scene as written, else from the picture's folder; NULL: out of memory or nowhere. */
-static char *find_scene(const char *image_path, const char *scene)
+/* The scene as written, else from the picture's folder, from malloc. NULL after adding an error. */
+static char *find_scene(const char *image_path, const char *scene, fl_diags *diags)
 {
     const char *slash = strrchr(image_path, '/');
     size_t folder = slash && scene[0] != '/' ? (size_t)(slash - image_path) + 1 : 0;
     size_t bytes = strlen(scene) + 1;
     char *path = malloc(folder + bytes);
-    if (!path)
+    if (!path) {
+        fl_out_of_memory(diags, image_path);
         return NULL;
+    }
     memcpy(path, image_path, folder);
     memcpy(path + folder, scene, bytes);
     if (access(scene, R_OK) == 0)
         memcpy(path, scene, bytes);
     else if (access(path, R_OK) != 0) {
+        fl_error(diags, (fl_loc){.file = image_path}, "the scene of this picture is not here: '%s'",
+                 scene);
         free(path);
         return NULL;
     }
@@ -357,9 +361,8 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
     out->is_exact = s.exact != 0.0;
     out->dialect = (fl_dialect)s.dialect;
     out->samples = (uint32_t)samples;
-    out->scene_path = find_scene(path, texts[0]);
-    return out->scene_path ||
-           fl_error(diags, loc, "the scene of this picture is not here: '%s'", texts[0]);
+    out->scene_path = find_scene(path, texts[0], diags);
+    return out->scene_path != NULL;
 }
 
 bool fl_saved_state_load(const char *path, fl_saved_state *out, fl_diags *diags)
@@ -388,18 +391,21 @@ void fl_saved_state_deinit(fl_saved_state *state)
     *state = (fl_saved_state){0};
 }
 
-static void apply_lights(const char *text, fl_scene *scene, fl_params *params)
+static bool apply_lights(const char *text, fl_scene *scene, fl_params *params)
 {
     uint32_t count = params->light_count;
-    fl_light *lights = count ? fl_arena_alloc(&scene->arena, count, sizeof *lights) : NULL;
+    if (count == 0)
+        return true;
+    fl_light *lights = fl_arena_alloc(&scene->arena, count, sizeof *lights);
     if (!lights)
-        return;
+        return false;
     memcpy(lights, params->lights, count * sizeof *lights);
     if (fl_lights_read(text, lights, count))
         params->lights = lights;
+    return true;
 }
 
-void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_params *params)
+bool fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_params *params)
 {
     const fl_params *from = &state->params;
     params->camera = from->camera;
@@ -419,6 +425,5 @@ void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_param
     params->solver = from->solver;
     params->is_adaptive = from->is_adaptive;
     params->precision = from->precision;
-    if (state->lights && state->lights[0])
-        apply_lights(state->lights, scene, params);
+    return !state->lights || !state->lights[0] || apply_lights(state->lights, scene, params);
 }

@@ -62,7 +62,7 @@ void fl_saved_state_deinit(fl_saved_state *state);
 
 /** Put the state over what the scene says: the same scene then gives the same bytes. Lights that
  * were changed go into the scene's arena; those of a scene with other lights since stay as they
- * are. */
-void fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_params *params);
+ * are. False: no memory for them. */
+bool fl_saved_state_apply(const fl_saved_state *state, fl_scene *scene, fl_params *params);
 
 #endif

@@ -20,8 +20,8 @@ enum {
     VW_MIX_MS = 700,      /**< A light that rests so long is edited no longer. */
     VW_HELP_PAGES = 3
 };
-#define VW_FOV_MIN_DEG     0.01
-#define VW_FOV_MAX_DEG     179.0
+#define VW_FOV_MIN_DEG     FL_FOV_MIN_DEG
+#define VW_FOV_MAX_DEG     FL_FOV_MAX_DEG
 #define VW_EXPOSURE_MAX_EV 20.0
 #define VW_SPEED_MAX       1024.0
 #define VW_FOCUS_RANGE                                                                             \

@@ -208,6 +208,12 @@ static void work_items(const vw_state *state, const fl_progress *progress, vw_st
                  (unsigned long long)progress->counts.invalid_samples);
         s->is_alarm = true;
     }
+    if (progress->counts.stopped_shadow_rays > 0) {
+        s = item(out, count, "shadow rays stopped");
+        snprintf(s->value, sizeof s->value, "%llu",
+                 (unsigned long long)progress->counts.stopped_shadow_rays);
+        s->is_alarm = true;
+    }
 }
 
 void vw_words_welcome(const vw_keymap *keymap, char *out, size_t out_bytes)

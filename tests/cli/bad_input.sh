@@ -54,6 +54,10 @@ expect 2 'expected bvh, octree, none' render good.txt --accel kd -o out.png
 expect 2 'needs a value' render good.txt -o
 expect 2 'takes no option' info good.txt --crop 0,0,1,1
 
+outputs=$(i=0; while [ $i -lt 17 ]; do printf -- '-o o%d.png ' $i; i=$((i + 1)); done)
+expect 2 'at most 16 pictures are written at once' render good.txt $outputs
+expect 0 '' render good.txt -n 1 --quiet ${outputs% -o *}
+
 # Scenes: exit 3, place and remedy.
 expect 3 'missing.txt: error: .*No such file' render missing.txt -o out.png
 : >empty.txt
@@ -68,6 +72,9 @@ mkfifo pipe.txt
 expect 3 'pipe.txt' render pipe.txt -o out.png
 ln -s loop.txt loop.txt
 expect 3 'loop.txt' render loop.txt -o out.png
+mkdir deep
+expect 0 '' render deep/../deep/../good.txt -n 1 -o deep/../above.png --quiet
+[ -s above.png ] || { echo "FAIL: picture by a path with .. is missing"; failed=$((failed + 1)); }
 scene 'Sphere { center 0 0 0 radious 1 }' >key.txt
 expect 3 "key.txt:5:.*did you mean 'radius'" render key.txt -o out.png
 scene 'Sphere { center 0 0 0 radius -1 }' >range.txt
@@ -89,6 +96,33 @@ expect 3 'empty.obj' render emptymesh.txt -o out.png
 scene 'TriangleMesh { obj_file good.xyz }' >kind.txt
 : >good.xyz
 expect 3 'kind.txt:5:|good.xyz' render kind.txt -o out.png
+ln -s loop.obj loop.obj
+scene 'TriangleMesh { obj_file loop.obj }' >loopmesh.txt
+expect 3 "loopmesh.txt:5:.*'loop.obj'" render loopmesh.txt -o out.png
+for kind in obj ply stl glb; do # devices and pipes are not waited for
+    ln -s /dev/zero "zero.$kind"
+    mkfifo "pipe.$kind"
+    for file in zero pipe; do
+        scene "TriangleMesh { obj_file $file.$kind }" >device.txt
+        expect 3 'device.txt:5:.*it is not a regular file' render device.txt -o out.png
+    done
+done
+for uri in pipe.obj zero.obj deep gone.bin; do # nor where a mesh names them
+    cat >inside.gltf <<TEXT
+{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+ "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+ "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}],
+ "bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "$uri"}]}
+TEXT
+    scene 'TriangleMesh { obj_file inside.gltf }' >inside.txt
+    expect 3 "inside.txt:5:.*could not open referenced file \"$uri\"" render inside.txt -o out.png
+done
+ln -s loop.png loop.png
+scene 'Sphere { center 0 0 0 radius 1 }' 'texture loop.png' >looptexture.txt
+expect 3 "looptexture.txt:4:.*'loop.png'" render looptexture.txt -o out.png
+mkfifo pipe.png
+scene 'Sphere { center 0 0 0 radius 1 }' 'texture pipe.png' >pipetexture.txt
+expect 3 "pipetexture.txt:4:.*it is not a regular file" render pipetexture.txt -o out.png
 printf 'not a picture' >fake.png
 scene 'Sphere { center 0 0 0 radius 1 }' 'texture fake.png' >fake.txt
 expect 3 'fake.txt:4:.*fake.png' render fake.txt -o out.png
@@ -107,7 +141,49 @@ if [ -c /dev/full ]; then
     ln -s /dev/full full.png
     expect 4 'full.png|/dev/full' render good.txt -n 1 -o full.png
 fi
-expect 4 'memory|bytes' render good.txt -n 1 --size 16384x16384 -o huge.png
+expect 4 'rendering 16384 x 16384 pixels needs [0-9]+ bytes.*the memory limit is 8589934592' \
+    render good.txt -n 1 --size 16384x16384 -o huge.png
+expect 4 "pipe.png': it is not a regular file" render good.txt -n 1 -o pipe.png
+expect 4 "loop.png': Too many levels of symbolic links" render good.txt -n 1 -o loop.png
+[ -L loop.png ] || { echo "FAIL: the link was replaced"; failed=$((failed + 1)); }
+ln -s deep/behind.png link.png
+expect 0 '' render good.txt -n 1 -o link.png --quiet
+[ -L link.png ] && [ -s deep/behind.png ] ||
+    { echo "FAIL: what a link leads to was not made"; failed=$((failed + 1)); }
+
+# Standard output that takes nothing.
+expect_full() { # ARGUMENTS...
+    timeout 60 "$program" "$@" >/dev/full 2>stderr </dev/null
+    got=$?
+    if [ "$got" = 4 ] && grep -q 'cannot write to standard output: No space left on device' stderr; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        echo "FAIL: $program $* into /dev/full: exit $got, expected 4 and a reason"
+        cat stderr
+    fi
+}
+if [ -c /dev/full ]; then
+    expect_full render good.txt -n 1 --json --quiet
+    expect_full render good.txt -n 1 -o out.png
+    expect_full info good.txt --json
+    expect_full convert good.txt -
+    expect_full --help
+    expect_full help scene
+    expect_full --version
+fi
+
+# Checkpoints, logs and keys of another kind or beyond their largest size, without taking room on the disk.
+expect 3 'pipe.obj.*it is not a regular file' render good.txt -n 1 --checkpoint pipe.obj -o out.png
+expect 3 'deep.*it is a folder' render good.txt -n 1 --checkpoint deep -o out.png
+expect 3 '/dev/null.*it is not a regular file' render good.txt -n 1 --checkpoint /dev/null -o out.png
+truncate -s 67108865 large.log
+expect 3 "large.log' is too large: 67108865 bytes, at most 67108864 are read" replay large.log
+truncate -s 67108864 large.log
+expect 3 'large.log:1:' replay large.log
+printf 'firstlight-log 1 16x16 good.txt\n0 quit\n' >quit.log
+truncate -s 1048577 large.keys
+expect 3 "large.keys' is too large: 1048577 bytes, at most 1048576 are read" replay quit.log --keys large.keys --platform osmesa
 
 # A disk that fills up while saving: the old picture stays, nothing is left beside it.
 before=$(sha256sum out.png)

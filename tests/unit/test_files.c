@@ -9,8 +9,11 @@
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "io/checkpoint_file.h"
 #include "io/digest.h"
 #include "io/files.h"
+#include "io/image_file.h"
+#include "io/mesh_file.h"
 
 static const char *find(const char *scene, const char *reference)
 {
@@ -136,6 +139,120 @@ static void saving_replaces_and_keeps_permissions(void **state)
     expect_none(&diags);
 }
 
+/* As opening it would: what a link leads to is made, links stay. */
+static void links_are_followed_to_their_end(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    struct stat status;
+    assert_int_equal(mkdir(temp_path("far"), 0777), 0);
+    assert_int_equal(symlink("far/chain", temp_path("dangling")), 0);
+    assert_int_equal(symlink("../made", temp_path("far/chain")), 0);
+    assert_true(fl_file_save(temp_path("dangling"), "new", 3, &diags));
+    expect_none(&diags);
+    assert_content(temp_path("made"), "new");
+    assert_int_equal(lstat(temp_path("dangling"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    assert_int_equal(lstat(temp_path("far/chain"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+
+    int entries = temp_count();
+    assert_int_equal(symlink("circle", temp_path("circle")), 0);
+    assert_int_equal(symlink("no folder/x", temp_path("nowhere")), 0);
+    assert_int_equal(symlink(temp_path("far"), temp_path("folder link")), 0);
+    assert_false(fl_file_save(temp_path("circle"), "x", 1, &diags));
+    expect_error(&diags, FL_CAUSE_ENVIRONMENT, "circle': Too many levels of symbolic links");
+    assert_false(fl_file_save(temp_path("nowhere"), "x", 1, &diags));
+    expect_error(&diags, FL_CAUSE_ENVIRONMENT, "nowhere': No such file or directory");
+    assert_false(fl_file_save(temp_path("folder link"), "x", 1, &diags));
+    expect_error(&diags, FL_CAUSE_ENVIRONMENT, "not a regular file");
+    assert_false(fl_file_save(temp_path("made/x"), "x", 1, &diags));
+    expect_error(&diags, FL_CAUSE_ENVIRONMENT, "made/x': Not a directory");
+    assert_int_equal(temp_count(), entries + 3);
+    assert_int_equal(lstat(temp_path("circle"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+}
+
+static void permissions_are_kept_whatever_the_mask(void **state)
+{
+    (void)state;
+    fl_diags diags = {0};
+    struct stat status;
+    const char *path = temp_write("shared by a group", "old", 3);
+    assert_int_equal(chmod(path, 0664), 0);
+    mode_t before = umask(077);
+    bool is_saved = fl_file_save(path, "new", 3, &diags);
+    umask(before);
+    assert_true(is_saved);
+    expect_none(&diags);
+    assert_int_equal(stat(path, &status), 0);
+    assert_int_equal(status.st_mode & 0777, 0664);
+}
+
+/* --- Files of the largest size, which take no room on the disk ------------------------------- */
+
+static bool load_scene(const char *path, fl_diags *diags)
+{
+    size_t bytes;
+    char *text = fl_file_load(path, "scene", FL_SCENE_FILE_MAX_BYTES, (fl_loc){0}, diags, &bytes);
+    free(text);
+    return text != NULL;
+}
+
+static bool load_mesh(const char *path, fl_diags *diags)
+{
+    fl_mesh *mesh = fl_mesh_load(path, (fl_loc){0}, diags);
+    fl_mesh_release(mesh);
+    return mesh != NULL;
+}
+
+static bool load_image(const char *path, fl_diags *diags)
+{
+    fl_image *image = fl_image_load(path, (fl_loc){0}, diags);
+    fl_image_release(image);
+    return image != NULL;
+}
+
+static bool load_checkpoint(const char *path, fl_diags *diags)
+{
+    char *file;
+    const void *data;
+    size_t bytes;
+    bool is_loaded = fl_checkpoint_load(path, "key", &file, &data, &bytes, diags);
+    free(file);
+    return is_loaded;
+}
+
+static void each_kind_of_file_has_a_largest_size(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        size_t most;
+        bool (*load)(const char *path, fl_diags *diags);
+        const char *message;
+    } rows[] = {
+        {"a.txt", FL_SCENE_FILE_MAX_BYTES, load_scene, "16777217 bytes, at most 16777216"},
+        {"a.obj", FL_MESH_FILE_MAX_BYTES, load_mesh, "2147483649 bytes, at most 2147483648"},
+        {"a.ply", FL_MESH_FILE_MAX_BYTES, load_mesh, "2147483649 bytes, at most 2147483648"},
+        {"a.png", FL_IMAGE_FILE_MAX_BYTES, load_image, "1073741825 bytes, at most 1073741824"},
+        {"a.check", FL_CHECKPOINT_MAX_BYTES, load_checkpoint,
+         "42949672961 bytes, at most 42949672960"},
+    };
+    for (size_t i = 0; i < FL_COUNT_OF(rows); i++) {
+        fl_diags diags = {0};
+        size_t bytes;
+        const char *path = temp_write(rows[i].name, "", 0);
+        assert_int_equal(truncate(path, (off_t)rows[i].most), 0);
+        assert_true(fl_file_check(path, "file", rows[i].most, (fl_loc){0}, &diags, &bytes));
+        assert_int_equal(bytes, rows[i].most);
+        expect_none(&diags);
+        assert_int_equal(truncate(path, (off_t)rows[i].most + 1), 0);
+        assert_false(rows[i].load(path, &diags));
+        expect_error(&diags, FL_CAUSE_INPUT, rows[i].message);
+    }
+}
+
 static void failing_writes_leave_everything_as_it_was(void **state)
 {
     (void)state;
@@ -232,6 +349,9 @@ int main(void)
         cmocka_unit_test(what_is_no_regular_file_is_refused_at_once),
         cmocka_unit_test(an_unreadable_file_is_refused),
         cmocka_unit_test(saving_replaces_and_keeps_permissions),
+        cmocka_unit_test(links_are_followed_to_their_end),
+        cmocka_unit_test(permissions_are_kept_whatever_the_mask),
+        cmocka_unit_test(each_kind_of_file_has_a_largest_size),
         cmocka_unit_test(failing_writes_leave_everything_as_it_was),
         cmocka_unit_test(a_read_only_file_stays),
         cmocka_unit_test(two_writers_never_mix),

@@ -148,13 +148,21 @@ static void bounds_are_enforced(void **state)
     REJECTS(p.weight_threshold = -1, "threshold");
     REJECTS(p.weight_threshold = nan, "threshold");
     REJECTS(p.light_samples = FL_LIGHT_SAMPLES_MAX + 1, "light samples");
+    REJECTS((p.sampler = FL_SAMPLER_STRATIFIED, p.strata = FL_STRATA_MAX + 1),
+            "at most 16777216 with 1 light samples");
+    ACCEPTS((p.sampler = FL_SAMPLER_STRATIFIED, p.strata = FL_STRATA_MAX));
+    REJECTS(
+        (p.sampler = FL_SAMPLER_STRATIFIED, p.light_samples = FL_LIGHT_SAMPLES_MAX, p.strata = 17),
+        "at most 16 with 1048576 light samples");
+    ACCEPTS(
+        (p.sampler = FL_SAMPLER_STRATIFIED, p.light_samples = FL_LIGHT_SAMPLES_MAX, p.strata = 16));
+    REJECTS(p.camera.fov_deg = nextafter(FL_FOV_MIN_DEG, 0.0), "from 0.01 to 179 degrees");
+    REJECTS(p.camera.fov_deg = nextafter(FL_FOV_MAX_DEG, 180.0), "from 0.01 to 179 degrees");
+    ACCEPTS(p.camera.fov_deg = FL_FOV_MIN_DEG);
+    ACCEPTS(p.camera.fov_deg = FL_FOV_MAX_DEG);
     REJECTS(p.background.x = inf, "background");
     REJECTS(p.ambient.y = 1e300, "ambient");
-    REJECTS(p.camera.fov_deg = 0.009, "field of view");
-    REJECTS(p.camera.fov_deg = 179.5, "field of view");
     REJECTS(p.camera.fov_deg = nan, "field of view");
-    ACCEPTS(p.camera.fov_deg = 0.01);
-    ACCEPTS(p.camera.fov_deg = 179);
     REJECTS(p.camera.aperture = -1e-9, "'aperture'");
     REJECTS(p.camera.aperture = inf, "'aperture'");
     REJECTS(p.camera.focus = 0, "'focus'");
