@@ -55,14 +55,16 @@ static bool read_all(int file, void *out, size_t bytes)
     return true;
 }
 
-static bool read_array(int file, void *out_array, uint32_t count, size_t item_bytes)
+static bool read_array(int file, void *out_array, uint32_t count, size_t item_bytes,
+                       bool *is_short_of_memory)
 {
     void *array = malloc(((size_t)count + 1) * item_bytes);
     memcpy(out_array, &array, sizeof array);
+    *is_short_of_memory = !array;
     return array && read_all(file, array, count * item_bytes);
 }
 
-static bool read_mesh(int file, const fl_mesh_head *head, fl_mesh *mesh)
+static bool read_mesh(int file, const fl_mesh_head *head, fl_mesh *mesh, bool *is_short)
 {
     uint32_t most = fl_max_u32(fl_max_u32(head->position_count, head->normal_count),
                                fl_max_u32(head->uv_count, head->face_count));
@@ -72,10 +74,11 @@ static bool read_mesh(int file, const fl_mesh_head *head, fl_mesh *mesh)
     mesh->normal_count = head->normal_count;
     mesh->uv_count = head->uv_count;
     mesh->face_count = head->face_count;
-    return read_array(file, &mesh->positions, mesh->position_count, sizeof *mesh->positions) &&
-           read_array(file, &mesh->normals, mesh->normal_count, sizeof *mesh->normals) &&
-           read_array(file, &mesh->uvs, mesh->uv_count, sizeof *mesh->uvs) &&
-           read_array(file, &mesh->faces, mesh->face_count, sizeof *mesh->faces);
+    return read_array(file, &mesh->positions, mesh->position_count, sizeof *mesh->positions,
+                      is_short) &&
+           read_array(file, &mesh->normals, mesh->normal_count, sizeof *mesh->normals, is_short) &&
+           read_array(file, &mesh->uvs, mesh->uv_count, sizeof *mesh->uvs, is_short) &&
+           read_array(file, &mesh->faces, mesh->face_count, sizeof *mesh->faces, is_short);
 }
 
 static bool are_indices(const uint32_t index[3], uint32_t count, bool may_miss)
@@ -143,8 +146,12 @@ static bool receive(int file, fl_mesh *mesh, const char *path, fl_loc loc, fl_di
             fl_error(diags, loc, "%s", message);
         return true;
     }
-    if (!read_mesh(file, &head, mesh))
-        return false;
+    bool is_short_of_memory = false;
+    if (!read_mesh(file, &head, mesh, &is_short_of_memory)) {
+        if (is_short_of_memory)
+            fl_out_of_memory(diags, path);
+        return is_short_of_memory;
+    }
     const char *fault = find_fault(mesh);
     if (fault)
         fl_error(diags, loc, "mesh '%s' has %s", path, fault);

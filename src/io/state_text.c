@@ -124,12 +124,15 @@ static bool read_options(const char *text, size_t text_bytes, fl_camera *camera)
     return true;
 }
 
-/* Scene text that says something about a camera; a missing first line is forgiven. */
-static bool read_block(const char *text, size_t text_bytes, fl_camera *camera)
+/* Scene text that says something about a camera; a missing first line is forgiven. The flag is set
+ * when there was no memory to find out. */
+static bool read_block(const char *text, size_t text_bytes, fl_camera *camera,
+                       bool *is_short_of_memory)
 {
     static const char first[] = "firstlight 1\n";
     size_t prefix = sizeof first - 1;
     char *whole = malloc(prefix + text_bytes + 1);
+    *is_short_of_memory = !whole;
     if (!whole)
         return false;
     bool has_first = text_bytes >= 10 && memcmp(text, "firstlight", 10) == 0;
@@ -141,6 +144,9 @@ static bool read_block(const char *text, size_t text_bytes, fl_camera *camera)
     fl_scene *scene = fl_scene_parse(whole, prefix + text_bytes, "camera", &(fl_parse_options){0},
                                      NULL, &diags); /* a camera is no reason to open files */
     free(whole);
+    for (uint32_t i = 0; i < diags.count; i++)
+        *is_short_of_memory |= diags.items[i].cause == FL_CAUSE_ENVIRONMENT;
+    *is_short_of_memory |= diags.count == 0 && diags.error_count > 0; /* not even for that */
     fl_diags_deinit(&diags);
     bool is_found = scene && (scene->has_camera || scene->view_count > 0);
     if (is_found) {
@@ -153,16 +159,24 @@ static bool read_block(const char *text, size_t text_bytes, fl_camera *camera)
     return is_found;
 }
 
-bool fl_camera_read_text(const char *text, size_t text_bytes, fl_camera *camera)
+static bool read_camera(const char *text, size_t text_bytes, fl_camera *camera,
+                        bool *is_short_of_memory)
 {
     fl_camera read = *camera;
-    if (!read_block(text, text_bytes, &read) && !read_options(text, text_bytes, &read))
+    if (!read_block(text, text_bytes, &read, is_short_of_memory) &&
+        !read_options(text, text_bytes, &read))
         return false;
     if (!fl_v3_is_finite(read.center) || !fl_v3_is_finite(read.direction) ||
         !fl_v3_is_finite(read.up))
         return false;
     *camera = read;
     return true;
+}
+
+bool fl_camera_read_text(const char *text, size_t text_bytes, fl_camera *camera)
+{
+    bool is_short_of_memory = false;
+    return read_camera(text, text_bytes, camera, &is_short_of_memory);
 }
 
 /* ---- The state of a picture ---- */
@@ -336,8 +350,12 @@ static bool read_state(const char *path, char *const texts[5], fl_saved_state *o
         return fl_error(diags, loc,
                         "this picture does not say how it was made: no firstlight keys");
     const char *end = texts[3] + strlen(texts[3]);
-    if (!fl_camera_read_text(texts[1], strlen(texts[1]), &out->params.camera) ||
-        !settings_read(texts[2], &s) || !fl_number_parse(texts[3], end, &samples) ||
+    bool is_short_of_memory = false;
+    bool has_camera =
+        read_camera(texts[1], strlen(texts[1]), &out->params.camera, &is_short_of_memory);
+    if (!has_camera && is_short_of_memory)
+        return fl_out_of_memory(diags, path);
+    if (!has_camera || !settings_read(texts[2], &s) || !fl_number_parse(texts[3], end, &samples) ||
         !(samples >= 0.0 && samples < 1e9) || s.dialect >= FL_DIALECT_COUNT ||
         s.precision > FL_PRECISION_DOUBLE || s.sampler > FL_SAMPLER_STRATIFIED)
         return fl_error(diags, loc, "the firstlight keys of this picture are damaged");

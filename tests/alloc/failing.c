@@ -112,6 +112,14 @@ bool failing_end(void)
     return atomic_load(&has_failed);
 }
 
+bool failing_names_machine(const fl_diags *diags)
+{
+    bool is_named = diags->count < diags->error_count;
+    for (uint32_t i = 0; i < diags->count; i++)
+        is_named |= diags->items[i].cause == FL_CAUSE_ENVIRONMENT;
+    return is_named;
+}
+
 long failing_live_blocks(void)
 {
     return atomic_load(&live);

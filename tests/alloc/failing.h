@@ -11,6 +11,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "core/diag.h"
+
 /** Let call number `n` from now (1: the next) fail, and if `from_then_on` every later one; 0: none.
  */
 void failing_begin(size_t n, bool from_then_on);
@@ -23,5 +25,8 @@ long failing_live_blocks(void);
  * with all later calls failing, too. `body` returns whether it succeeded. Checked here: it fails
  * only when a call did, and leaves no block behind. Returns how many calls failed. */
 size_t failing_every_call(bool (*body)(void *context), void *context);
+
+/** Whether an error blames the machine, or there was no memory for its message. */
+bool failing_names_machine(const fl_diags *diags);
 
 #endif

@@ -37,6 +37,7 @@ static bool use(const trial *t, fl_render *render, const fl_scene *scene, fl_com
     params.width = params.height = SIDE;
     params.sampler = t->test->sampler;
     params.solver = t->test->solver;
+    params.precision = t->test->is_double ? FL_PRECISION_DOUBLE : FL_PRECISION_FLOAT;
     uint64_t revision = 0;
     uint8_t shown[BYTES];
     if (!fl_params_check(&params, diags) || !fl_render_restart(render, compiled, &params, diags))
@@ -102,10 +103,7 @@ static bool run(void *context)
     assert_true(ok == (diags.error_count == 0));
     if (ok && t->has_expected)
         assert_memory_equal(t->film, t->expected, sizeof t->film);
-    bool names_machine = diags.count < diags.error_count; /* there was no memory for the message */
-    for (uint32_t i = 0; i < diags.count; i++)
-        names_machine |= diags.items[i].cause == FL_CAUSE_ENVIRONMENT;
-    if (!ok && did_fail && !names_machine) {
+    if (!ok && did_fail && !failing_names_machine(&diags)) {
         char text[512];
         fl_diag_format(&diags.items[0], text, sizeof text);
         fail_msg("memory is not named as the cause: %s", text);

@@ -24,10 +24,7 @@ static char folder[] = "/tmp/firstlight-alloc-XXXXXX", obj_path[64], save_path[6
 /* Failed as it should: with an error that blames the machine, or for which there was no memory. */
 static bool fails_well(fl_diags *diags)
 {
-    bool names_machine = diags->count < diags->error_count;
-    for (uint32_t i = 0; i < diags->count; i++)
-        names_machine |= diags->items[i].cause == FL_CAUSE_ENVIRONMENT;
-    bool is_well = diags->error_count > 0 && names_machine;
+    bool is_well = diags->error_count > 0 && failing_names_machine(diags);
     fl_diags_deinit(diags);
     return is_well;
 }

@@ -175,7 +175,7 @@ fi
 
 # Checkpoints, logs and keys of another kind or beyond their largest size, without taking room on the disk.
 expect 3 'pipe.obj.*it is not a regular file' render good.txt -n 1 --checkpoint pipe.obj -o out.png
-expect 3 'deep.*it is a folder' render good.txt -n 1 --checkpoint deep -o out.png
+expect 4 'deep.*it is a folder' render good.txt -n 1 --checkpoint deep -o out.png
 expect 3 '/dev/null.*it is not a regular file' render good.txt -n 1 --checkpoint /dev/null -o out.png
 truncate -s 67108865 large.log
 expect 3 "large.log' is too large: 67108865 bytes, at most 67108864 are read" replay large.log
