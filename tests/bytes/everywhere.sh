@@ -136,7 +136,7 @@ for cc in gcc clang; do
     done
 done
 
-# An AArch64 machine is through. Elsewhere an emulator takes six minutes of two cores for the gallery at -O3, and at -O0
+# An AArch64 machine is through. Elsewhere an emulator takes eight minutes of two cores for the gallery at -O3, and at -O0
 # half an hour: there the small scenes alone.
 [ "$machine" != aarch64 ] || finish
 cross=aarch64-linux-gnu-gcc
