@@ -12,6 +12,15 @@ enum {
     WORD_BYTES = 64      /* longer words have no nearest name */
 };
 
+/* Stands for an error whose own message there was no memory for. Never freed. */
+static const char no_memory[] = "out of memory, even for the message";
+
+static void free_message(char *message)
+{
+    if (message != no_memory)
+        free(message);
+}
+
 void fl_diags_set_text(fl_diags *diags, const char *file, const char *text, size_t text_bytes)
 {
     diags->text_file = file;
@@ -70,7 +79,7 @@ static bool drop_newest_warning(fl_diags *diags)
         while (end < diags->count && diags->items[end].severity == FL_NOTE)
             end++;
         for (uint32_t j = i; j < end; j++)
-            free(diags->items[j].message);
+            free_message(diags->items[j].message);
         memmove(&diags->items[i], &diags->items[end], (diags->count - end) * sizeof(fl_diag));
         diags->count -= end - i;
         diags->dropped_count++;
@@ -110,6 +119,12 @@ static void add(fl_diags *diags, fl_severity severity, fl_cause cause, fl_loc lo
     /* One piece of memory holds message, file name and source line. */
     size_t file_bytes = loc.file ? strlen(loc.file) : 0;
     char *memory = has_room ? malloc(message_bytes + file_bytes + line_bytes + 3) : NULL;
+    if (has_room && !memory &&
+        severity == FL_ERROR) { /* The machine is the cause, whatever it was. */
+        diags->items[diags->count++] = (fl_diag){
+            .severity = FL_ERROR, .cause = FL_CAUSE_ENVIRONMENT, .message = (char *)no_memory};
+        return;
+    }
     if (!memory) {
         diags->dropped_count += severity != FL_NOTE;
         return;
@@ -228,7 +243,7 @@ size_t fl_diag_format(const fl_diag *diag, char *out, size_t out_bytes)
 void fl_diags_deinit(fl_diags *diags)
 {
     for (uint32_t i = 0; i < diags->count; i++)
-        free(diags->items[i].message);
+        free_message(diags->items[i].message);
     *diags = (fl_diags){0};
 }
 

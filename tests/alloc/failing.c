@@ -114,7 +114,7 @@ bool failing_end(void)
 
 bool failing_names_machine(const fl_diags *diags)
 {
-    bool is_named = diags->count < diags->error_count;
+    bool is_named = false;
     for (uint32_t i = 0; i < diags->count; i++)
         is_named |= diags->items[i].cause == FL_CAUSE_ENVIRONMENT;
     return is_named;

@@ -26,7 +26,7 @@ long failing_live_blocks(void);
  * only when a call did, and leaves no block behind. Returns how many calls failed. */
 size_t failing_every_call(bool (*body)(void *context), void *context);
 
-/** Whether an error blames the machine, or there was no memory for its message. */
+/** Whether an error blames the machine. */
 bool failing_names_machine(const fl_diags *diags);
 
 #endif

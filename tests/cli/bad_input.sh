@@ -181,6 +181,8 @@ truncate -s 67108865 large.log
 expect 3 "large.log' is too large: 67108865 bytes, at most 67108864 are read" replay large.log
 truncate -s 67108864 large.log
 expect 3 'large.log:1:' replay large.log
+printf 'firstlight-log 1 16x16 good.txt\n0 snapshot many.png 1048577\n1 quit\n' >many.log
+expect 3 'many.log:2:.*1048576' replay many.log
 printf 'firstlight-log 1 16x16 good.txt\n0 quit\n' >quit.log
 truncate -s 1048577 large.keys
 expect 3 "large.keys' is too large: 1048577 bytes, at most 1048576 are read" replay quit.log --keys large.keys --platform osmesa

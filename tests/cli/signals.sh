@@ -48,11 +48,11 @@ begin() { # SCENE OPTIONS...
 threads() { ls /proc/$child/task 2>/dev/null | wc -l; }
 # The second thread is that of the pool or a worker: the scene is being compiled or rendered.
 until_at_work() { while [ -d /proc/$child ] && [ "$(threads)" -lt 2 ]; do :; done; }
-# SIGINT is bit 2 of the signals caught.
+# SIGHUP, the lowest bit of the signals caught, is the last of the three to be.
 until_loading() {
     while [ -d /proc/$child ]; do
         caught=$(sed -n 's/^SigCgt:.*\(.\)$/\1/p' /proc/$child/status 2>/dev/null)
-        case $caught in 2 | 3 | 6 | 7 | a | b | e | f) break ;; esac
+        case $caught in 1 | 3 | 5 | 7 | 9 | b | d | f) break ;; esac
     done
 }
 

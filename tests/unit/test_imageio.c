@@ -273,6 +273,30 @@ static void what_is_no_picture_is_refused(void **state)
     refuse(temp_write("wide.ppm", wide, sizeof wide - 1), "at most 65536 a side");
 }
 
+/* A picture of so many pixels that has none of its bytes. */
+static const char *write_head(uint32_t width, uint32_t height)
+{
+    char head[64];
+    int bytes = snprintf(head, sizeof head, "P6\n%u %u\n255\n", width, height);
+    return temp_write("head.ppm", head, (size_t)bytes);
+}
+
+static void sizes_are_limited(void **state)
+{
+    (void)state;
+    const char *path = write_head(FL_IMAGE_SIDE_MAX, 1);
+    assert_int_equal(truncate(path, 20 + 3 * FL_IMAGE_SIDE_MAX), 0);
+    fl_image *image = load(path);
+    assert_int_equal(image->width, FL_IMAGE_SIDE_MAX);
+    fl_image_release(image);
+    refuse(write_head(FL_IMAGE_SIDE_MAX + 1, 1), "65537 x 1 pixels, at most 65536 a side");
+    refuse(write_head(1, FL_IMAGE_SIDE_MAX + 1), "1 x 65537 pixels, at most 65536 a side");
+    const uint32_t rows = (uint32_t)(FL_IMAGE_MAX_BYTES / (3 * FL_IMAGE_SIDE_MAX));
+    refuse(write_head(FL_IMAGE_SIDE_MAX, rows), "it should have 65536 x 5461 pixels, and has");
+    refuse(write_head(FL_IMAGE_SIDE_MAX, rows + 1),
+           "1073872896 bytes in memory, at most 1073741824");
+}
+
 /* A kilobyte of an EXR or a GIF whose head asks for gigabytes: refused before the library takes
  * them. */
 static void heads_that_promise_too_much_are_refused(void **state)
@@ -396,6 +420,7 @@ int main(void)
         cmocka_unit_test(grey_alpha_and_linear_files_are_understood),
         cmocka_unit_test(a_wrong_extension_does_not_matter),
         cmocka_unit_test(what_is_no_picture_is_refused),
+        cmocka_unit_test(sizes_are_limited),
         cmocka_unit_test(heads_that_promise_too_much_are_refused),
         cmocka_unit_test(cut_off_files_are_refused),
         cmocka_unit_test(the_end_of_a_jpeg_is_looked_for_where_it_is),
