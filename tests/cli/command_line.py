@@ -267,9 +267,10 @@ def signals():
     out, _ = interrupted("replay", start("replay", "long.log", "--json", "-q"))
     line = json.loads(out)
     expect(line["interrupted"] and "latency_ms" in line and len(line["snapshots"]) <= 1, "the replay's report so far", line)
-    # So large that no sample is complete by then.
+    # A million shadow rays a pixel: not even the first few pixels are there by then.
+    write("heavy.txt", (SCENE % "").replace("PointLight {", "DiskLight { direction -2 -3 -4 radius 1"))
     _, err = interrupted("before the first sample", start(
-        "render", "good.txt", "--size", "4096x4096", "--precision", "double", "-j", "1", "-o", "none.png", "-q"))
+        "render", "heavy.txt", "--size", "512x512", "--light-samples", "1000000", "-j", "1", "-o", "none.png", "-q"))
     expect("interrupted before" in err and not os.path.exists("none.png"), "it is said that there is no picture", err)
     interrupted("info --noise-split", start("info", os.path.join(SOURCE, "scenes/shadow-soft.txt"), "--noise-split",
                                             "--size", "2048x2048", "--light-samples", "64"))
