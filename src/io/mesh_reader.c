@@ -23,7 +23,7 @@ enum { SECONDS_BASE = 5, BYTES_PER_SECOND = 1 << 20 };
 /* Sanitizers map more than any limit; and what crashes must end as it does without them. */
 #if defined __SANITIZE_ADDRESS__ || defined __SANITIZE_THREAD__
 #define FL_HAS_SHADOW
-const char *__asan_default_options(void);
+__attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void)
 {
     return "handle_segv=0:abort_on_error=1:detect_leaks=0";
