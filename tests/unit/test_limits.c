@@ -134,6 +134,7 @@ static void expect_light(uint32_t count, float expected, uint64_t stopped)
     fl_render_destroy(render);
     fl_compiled_release(compiled);
     fl_scene_destroy(scene);
+    fl_diags_deinit(&diags);
     free(text);
 }
 
