@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/image_file.h"
+#include "io/path.h"
 
 static const char *const map_names[CLI_MAP_COUNT] = {[FL_RENDER_SAMPLES] = "samples", [FL_RENDER_ERROR] = "error"};
 
@@ -61,8 +62,7 @@ const char *cli_aov_name(const cli_aovs *aovs, uint32_t i)
 
 char *cli_aov_path(const char *path, const char *name)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    size_t stem = dot ? (size_t)(dot - path) : strlen(path), room = stem + 32;
+    size_t stem = (size_t)(fl_path_ending(path) - path), room = stem + 32;
     char *beside = malloc(room);
     if (beside)
         snprintf(beside, room, "%.*s.%s.exr", (int)stem, path, name);

@@ -6,6 +6,7 @@
 
 #include "cli/bench_work.h"
 #include "io/mesh_file.h"
+#include "io/path.h"
 
 static bool allocate(bench_mesh *out, uint32_t position_count, uint32_t face_count, fl_diags *diags)
 {
@@ -42,8 +43,7 @@ bool bench_mesh_load(const char *path, bench_mesh *out, fl_diags *diags)
     fl_mesh *mesh = fl_mesh_load(path, (fl_loc){.file = path}, diags);
     if (!mesh)
         return false;
-    const char *slash = strrchr(path, '/');
-    snprintf(out->name, sizeof out->name, "%s", slash ? slash + 1 : path);
+    snprintf(out->name, sizeof out->name, "%s", fl_path_name(path));
     bool ok = allocate(out, mesh->position_count + 4, mesh->face_count + 2, diags);
     fl_box box = fl_box_empty();
     for (uint32_t f = 0; ok && f < mesh->face_count; f++)

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/places.h"
 #include "io/files.h"
+#include "io/path.h"
 
 /* Whether our dialect has a key of that name whose value is a file or folder. */
 static bool is_path_key(const fl_token *word)
@@ -105,9 +106,8 @@ static void write_moved(const move *m, const char *text, size_t bytes, FILE *fil
 static bool save(const char *in, const char *out, const char *text, size_t bytes, fl_diags *diags)
 {
     move m = {.in = in, .out = out};
-    const char *slash = strrchr(out, '/');
     char folder[PATH_MAX];
-    snprintf(folder, sizeof folder, "%.*s.", slash ? (int)(slash - out) + 1 : 0, out);
+    snprintf(folder, sizeof folder, "%.*s.", fl_path_folder_bytes(out), out);
     if (!cli_place_check(out, diags))
         return false;
     if (!realpath(folder, m.folder))

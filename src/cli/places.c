@@ -9,32 +9,25 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "io/module.h"
+#include "io/path.h"
+
 bool cli_data_find(const char *name, char out[PATH_MAX])
 {
-    /* From the folder of the program: PREFIX/bin, or build/PRESET of a checkout. */
+    /* From PREFIX/bin, or build/PRESET of a checkout. */
     static const char *const roots[] = {"../share/firstlight/", "../../"};
-    char program[PATH_MAX];
-    if (access(name, R_OK) == 0)
-        return snprintf(out, PATH_MAX, "%s", name) < PATH_MAX;
-    ssize_t length = readlink("/proc/self/exe", program, sizeof program - 1);
-    program[length > 0 ? length : 0] = 0;
-    char *slash = strrchr(program, '/');
-    for (size_t i = 0; slash && i < FL_COUNT_OF(roots); i++) {
-        int bytes = snprintf(out, PATH_MAX, "%.*s%s%s", (int)(slash - program) + 1, program,
-                             roots[i], name);
-        if (bytes < PATH_MAX && access(out, R_OK) == 0)
-            return true;
-    }
-    snprintf(out, PATH_MAX, "%s", name);
-    return false;
+    char found[FL_MODULE_PATH_BYTES];
+    bool is_here = access(name, R_OK) == 0;
+    if (!is_here && fl_program_find(roots, FL_COUNT_OF(roots), name, found) &&
+        snprintf(out, PATH_MAX, "%s", found) < PATH_MAX)
+        return true;
+    return snprintf(out, PATH_MAX, "%s", name) < PATH_MAX && is_here;
 }
 
 /* The folder that the last component of `path` stands in. False: too long. */
 static bool folder_of(const char *path, char out[PATH_MAX])
 {
-    const char *slash = strrchr(path, '/');
-    int bytes = slash ? (int)(slash - path) + 1 : 0;
-    return snprintf(out, PATH_MAX, "%.*s.", bytes, path) < PATH_MAX;
+    return snprintf(out, PATH_MAX, "%.*s.", fl_path_folder_bytes(path), path) < PATH_MAX;
 }
 
 static bool refuse(const char *path, const char *why, fl_diags *diags)
@@ -82,17 +75,11 @@ static bool is_same_file(const char *a, const char *b)
            left.st_ino == right.st_ino;
 }
 
-static const char *last_component(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 bool cli_places_are_same(const char *a, const char *b)
 {
     char left[PATH_MAX], right[PATH_MAX];
     if (strcmp(a, b) == 0 || is_same_file(a, b))
         return true;
-    return strcmp(last_component(a), last_component(b)) == 0 && folder_of(a, left) &&
+    return strcmp(fl_path_name(a), fl_path_name(b)) == 0 && folder_of(a, left) &&
            folder_of(b, right) && is_same_file(left, right);
 }

@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "io/mesh_file.h"
+#include "io/path.h"
 
 /* Node trees are walked with a stack of our own; a deeper or wider one than this is no mesh. */
 enum { NODES_MAX = 100000 };
@@ -265,12 +266,6 @@ static void close_file(struct aiFileIO *io, struct aiFile *file)
 
 /* ---- The whole ---- */
 
-static bool has_ending(const char *path, const char *ending)
-{
-    const char *dot = strrchr(path, '.');
-    return dot && strcasecmp(dot, ending) == 0;
-}
-
 /* The library takes time by the counts of a PLY's head, and never finds the end of one that has
  * none. Every element has a byte at least. */
 static bool check_ply_head(const char *path, size_t bytes, fl_diags *diags)
@@ -309,7 +304,7 @@ fl_mesh *fl_mesh_load_assimp(const char *path, size_t bytes, fl_diags *diags)
         fl_error(diags, (fl_loc){0}, "cannot read mesh '%s': it is empty", path);
         return NULL;
     }
-    if (has_ending(path, ".ply") && !check_ply_head(path, bytes, diags))
+    if (strcasecmp(fl_path_ending(path), ".ply") == 0 && !check_ply_head(path, bytes, diags))
         return NULL;
     const struct aiScene *scene =
         aiImportFileEx(path, aiProcess_Triangulate | aiProcess_SortByPType, &io);
@@ -321,7 +316,7 @@ fl_mesh *fl_mesh_load_assimp(const char *path, size_t bytes, fl_diags *diags)
     assimp_reader r = {.scene = scene,
                        .path = path,
                        .diags = diags,
-                       .has_vertex_normals = !has_ending(path, ".stl"),
+                       .has_vertex_normals = strcasecmp(fl_path_ending(path), ".stl") != 0,
                        .mesh = fl_mesh_create()};
     bool is_good = convert(&r);
     free(r.joiner.slots);

@@ -13,6 +13,7 @@
 
 #include "io/image_file.h"
 #include "io/mesh_file.h"
+#include "io/path.h"
 
 /* Names tried for the file written beside the target before giving up: a name is only taken when an
  * earlier process of the same number died in between. */
@@ -33,8 +34,7 @@ static bool find(void *context, const char *scene_path, const char *reference, c
         return true;
     if (*reference == '/')
         return false;
-    const char *slash = strrchr(scene_path, '/');
-    int folder_length = slash ? (int)(slash - scene_path) + 1 : 0;
+    int folder_length = fl_path_folder_bytes(scene_path);
     for (int level = 0; level <= FL_FILES_PARENTS_MAX; level++) {
         static const char parents[] = "../../../../../../";
         _Static_assert(sizeof parents - 1 == 3 * FL_FILES_PARENTS_MAX, "one ../ a level");
@@ -129,13 +129,6 @@ char *fl_file_load(const char *path, const char *what, size_t max_bytes, fl_loc 
     return text;
 }
 
-/* Length of the part of `path` before its last component: 0, or up to and with the last slash. */
-static int folder_bytes(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? (int)(slash - path) + 1 : 0;
-}
-
 static bool write_all(int file, const void *data, size_t bytes)
 {
     const char *at = data;
@@ -156,7 +149,7 @@ static int create_beside(const char *target, mode_t mode, char temp_path[PATH_MA
 {
     for (int i = 0; i < TEMP_NAMES_MAX; i++) {
         int length = snprintf(temp_path, PATH_MAX, "%.*s.firstlight-%ld-%d.tmp",
-                              folder_bytes(target), target, (long)getpid(), i);
+                              fl_path_folder_bytes(target), target, (long)getpid(), i);
         if (length < 0 || length >= PATH_MAX) {
             errno = ENAMETOOLONG;
             return -1;
@@ -172,7 +165,7 @@ static int create_beside(const char *target, mode_t mode, char temp_path[PATH_MA
 static void sync_folder(const char *target)
 {
     char folder[PATH_MAX];
-    int length = snprintf(folder, sizeof folder, "%.*s.", folder_bytes(target), target);
+    int length = snprintf(folder, sizeof folder, "%.*s.", fl_path_folder_bytes(target), target);
     if (length < 0 || length >= (int)sizeof folder)
         return;
     int file = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -200,7 +193,7 @@ static bool find_end(const char *path, char out_end[PATH_MAX])
             return false;
         }
         link[bytes] = '\0';
-        int folder = link[0] == '/' ? 0 : folder_bytes(out_end);
+        int folder = link[0] == '/' ? 0 : fl_path_folder_bytes(out_end);
         length = folder + snprintf(out_end + folder, (size_t)(PATH_MAX - folder), "%s", link);
     }
     errno = ENAMETOOLONG;

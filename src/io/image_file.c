@@ -11,6 +11,7 @@
 #include "io/files.h"
 #include "io/image_whole.h"
 #include "io/module.h"
+#include "io/path.h"
 
 /* ---- The codec module ---- */
 
@@ -189,9 +190,8 @@ static const image_kind kinds[] = {
 
 static const image_kind *find_kind(const char *path, fl_diags *diags)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot && i < FL_COUNT_OF(kinds); i++)
-        if (strcasecmp(dot, kinds[i].extension) == 0)
+    for (size_t i = 0; i < FL_COUNT_OF(kinds); i++)
+        if (strcasecmp(fl_path_ending(path), kinds[i].extension) == 0)
             return &kinds[i];
     fl_error(diags, (fl_loc){0},
              "cannot write '%s': the name must end in .png .exr .tif .tiff or .bmp", path);

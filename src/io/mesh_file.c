@@ -8,6 +8,7 @@
 #include "io/files.h"
 #include "io/mesh_apart.h"
 #include "io/obj.h"
+#include "io/path.h"
 
 static fl_mesh *load_obj(const char *path, fl_loc loc, fl_diags *diags)
 {
@@ -33,9 +34,8 @@ static const mesh_kind kinds[] = {
 
 fl_mesh *fl_mesh_load(const char *path, fl_loc loc, fl_diags *diags)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot && i < FL_COUNT_OF(kinds); i++)
-        if (strcasecmp(dot, kinds[i].extension) == 0)
+    for (size_t i = 0; i < FL_COUNT_OF(kinds); i++)
+        if (strcasecmp(fl_path_ending(path), kinds[i].extension) == 0)
             return kinds[i].load(path, loc, diags);
     fl_error(diags, loc, "cannot read mesh '%s': the name must end in .obj .ply .stl .gltf or .glb",
              path);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "io/image_file.h"
+#include "io/path.h"
 
 /* Numbers of a camera as text, in the order in which they are written. */
 enum { CAMERA_NUMBERS = 13, NUMBER_BYTES = 32 };
@@ -310,9 +311,8 @@ void fl_state_texts_fill(fl_state_texts *out, const char *scene_path, const fl_s
 bool fl_saved_state_is_for(const char *path)
 {
     static const char *const endings[] = {".png", ".exr", ".tif", ".tiff"};
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot && i < FL_COUNT_OF(endings); i++)
-        if (strcasecmp(dot, endings[i]) == 0)
+    for (size_t i = 0; i < FL_COUNT_OF(endings); i++)
+        if (strcasecmp(fl_path_ending(path), endings[i]) == 0)
             return true;
     return false;
 }
@@ -320,8 +320,7 @@ bool fl_saved_state_is_for(const char *path)
 /* The scene as written, else from the picture's folder, from malloc. NULL after adding an error. */
 static char *find_scene(const char *image_path, const char *scene, fl_diags *diags)
 {
-    const char *slash = strrchr(image_path, '/');
-    size_t folder = slash && scene[0] != '/' ? (size_t)(slash - image_path) + 1 : 0;
+    size_t folder = scene[0] == '/' ? 0 : (size_t)fl_path_folder_bytes(image_path);
     size_t bytes = strlen(scene) + 1;
     char *path = malloc(folder + bytes);
     if (!path) {

@@ -10,6 +10,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "io/path.h"
 #include "io/state_text.h"
 #include "viewer/log.h"
 #include "viewer/pace.h"
@@ -144,8 +145,7 @@ static void reload_if_changed(app *a)
 /* Read by its own thread; the old picture stays and can be used until then. */
 static void load_scene(app *a, const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    vw_state_say(&a->session.state, "reading %s", slash ? slash + 1 : path);
+    vw_state_say(&a->session.state, "reading %s", fl_path_name(path));
     a->session.state.message_until_ms = UINT64_MAX; /* Until it is read. */
     vw_loading_ask(a->loading, path);
 }

@@ -11,6 +11,7 @@
 
 #include "io/files.h"
 #include "io/image_file.h"
+#include "io/path.h"
 #include "viewer/log.h"
 #include "viewer/pace.h"
 #include "viewer/present.h"
@@ -332,8 +333,7 @@ static bool run_log(replay *r)
 /* The scene as the log names it: from the working directory, else from the log's folder. */
 static void find_scene(const char *log_path, const char *scene, char out[2 * VW_PATH_MAX])
 {
-    const char *slash = strrchr(log_path, '/');
-    size_t folder = slash ? (size_t)(slash - log_path) + 1 : 0;
+    size_t folder = (size_t)fl_path_folder_bytes(log_path);
     size_t bytes = strlen(scene) + 1;
     if (access(scene, F_OK) == 0 || scene[0] == '/' || folder == 0 ||
         folder + bytes > 2 * VW_PATH_MAX)

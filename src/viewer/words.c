@@ -8,6 +8,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
+#include "io/path.h"
 #include "viewer/input.h"
 #include "viewer/viewer.h"
 
@@ -297,8 +298,7 @@ double vw_words_done(const vw_state *state, const fl_progress *progress)
 void vw_words_title(const vw_state *state, const fl_progress *progress, const char *scene_path,
                     char *out, size_t out_bytes)
 {
-    const char *name = strrchr(scene_path, '/');
-    name = name ? name + 1 : scene_path;
+    const char *name = fl_path_name(scene_path);
     if (progress->state == FL_RENDER_DONE)
         snprintf(out, out_bytes, "%s \342\200\224 firstlight", name);
     else if (state->is_paused)
