@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "io/files.h"
+#include "io/path.h"
 
 /* Files are dated by the last tick of the kernel's clock: the exact time would be later than the
  * date of a file that was written after it. */
@@ -47,8 +48,7 @@ static bool find(void *context, const char *scene_path, const char *reference, c
                  size_t out_bytes)
 {
     bool is_found = fl_files_on_disk.find(NULL, scene_path, reference, out_path, out_bytes);
-    const char *slash = *reference == '/' ? NULL : strrchr(scene_path, '/');
-    int folder_bytes = slash ? (int)(slash - scene_path) + 1 : 0;
+    int folder_bytes = *reference == '/' ? 0 : fl_path_folder_bytes(scene_path);
     if (!is_found && *reference &&
         (size_t)snprintf(out_path, out_bytes, "%.*s%s", folder_bytes, scene_path, reference) >=
             out_bytes)
@@ -58,19 +58,10 @@ static bool find(void *context, const char *scene_path, const char *reference, c
     return is_found;
 }
 
-static fl_mesh *load_mesh(void *context, const char *path, fl_loc loc, fl_diags *diags)
-{
-    (void)context;
-    return fl_files_on_disk.load_mesh(NULL, path, loc, diags);
-}
-
-static fl_image *load_image(void *context, const char *path, fl_loc loc, fl_diags *diags)
-{
-    (void)context;
-    return fl_files_on_disk.load_image(NULL, path, loc, diags);
-}
-
 fl_files fl_files_listed(fl_file_list *list)
 {
-    return (fl_files){list, find, load_mesh, load_image};
+    fl_files files = fl_files_on_disk; /* whose functions ask for no context */
+    files.context = list;
+    files.find = find;
+    return files;
 }
