@@ -11,6 +11,7 @@
 #include "cli/report.h"
 #include "io/files.h"
 #include "io/image_file.h"
+#include "io/path.h"
 
 enum { PATH_BYTES = 4096 };
 
@@ -24,9 +25,7 @@ typedef struct checker {
 /* "dir/name.txt" to "dir/name" + suffix. */
 static void beside(const char *scene, const char *suffix, char out[PATH_BYTES])
 {
-    const char *dot = strrchr(scene, '.'), *slash = strrchr(scene, '/');
-    int stem = dot && (!slash || dot > slash) ? (int)(dot - scene) : (int)strlen(scene);
-    snprintf(out, PATH_BYTES, "%.*s%s", stem, scene, suffix);
+    snprintf(out, PATH_BYTES, "%.*s%s", (int)(fl_path_ending(scene) - scene), scene, suffix);
 }
 
 static bool write_golden(const char *path, const cli_scene *scene, const cli_picture *picture, fl_diags *diags)
@@ -126,7 +125,7 @@ static void check_picture(checker *check, const char *path, cli_scene *scene)
     cli_picture_plan plan = {.threads = check->options->threads};
     cli_picture picture = {0};
     scene->params.width = scene->params.height = CLI_GOLDEN_SIDE;
-    scene->params.crop_x = scene->params.crop_y = scene->params.crop_w = scene->params.crop_h = 0;
+    cli_drop_crop(&scene->params);
     if (cli_picture_render(scene, &limits, &plan, &picture) && !picture.was_interrupted) {
         if (!cli_has(check->options, CLI_OPT_UPDATE)) {
             compare(check, path, scene, &picture);

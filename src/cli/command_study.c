@@ -18,8 +18,7 @@ static void shrink(fl_params *params)
         return;
     params->width = fl_max_u32(1, params->width * SIDE_DEFAULT / longer);
     params->height = fl_max_u32(1, params->height * SIDE_DEFAULT / longer);
-    params->crop_x = params->crop_y = params->crop_w = params->crop_h =
-        0; /* of the large picture */
+    cli_drop_crop(params);
 }
 
 static uint32_t power_of_two_below(uint32_t x)

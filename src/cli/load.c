@@ -135,8 +135,7 @@ static void apply_camera(const double value[10], fl_camera *camera)
     camera->fov_deg = value[9];
 }
 
-/* A crop belongs to the size that it was cut from. */
-static void drop_crop(fl_params *params)
+void cli_drop_crop(fl_params *params)
 {
     params->crop_x = params->crop_y = params->crop_w = params->crop_h = 0;
 }
@@ -153,7 +152,7 @@ static void apply_options(const cli_options *o, fl_params *params)
         params->height = (uint32_t)fl_clamp(floor(params->height * o->scale + 0.5), 1.0, 1e9);
     }
     if (cli_has(o, CLI_OPT_SIZE) || cli_has(o, CLI_OPT_SCALE))
-        drop_crop(params);
+        cli_drop_crop(params);
     if (cli_has(o, CLI_OPT_CROP)) {
         params->crop_x = o->crop[0];
         params->crop_y = o->crop[1];

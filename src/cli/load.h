@@ -34,6 +34,9 @@ bool cli_scene_open(const cli_options *options, const char *path, cli_scene *out
 
 void cli_scene_close(cli_scene *scene);
 
+/** Render all of the picture: a crop belongs to the size that it was cut from, which changes. */
+void cli_drop_crop(fl_params *params);
+
 /** Seconds on a clock that only goes forward. */
 double cli_wall_seconds(void);
 
