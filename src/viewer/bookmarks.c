@@ -75,37 +75,25 @@ typedef struct span {
     const char *begin, *end;
 } span;
 
-static bool is_word(span word, const char *text)
-{
-    size_t bytes = strlen(text);
-    return (size_t)(word.end - word.begin) == bytes && memcmp(word.begin, text, bytes) == 0;
-}
-
-/* The next word or bracket of scene text, comments left out; empty: the end. */
-static span next_word(const char *at)
-{
-    for (at += strspn(at, " \t\n\v\f\r"); *at == '#'; at += strspn(at, " \t\n\v\f\r"))
-        at += strcspn(at, "\n");
-    size_t bytes = strcspn(at, " \t\n\v\f\r{}[]");
-    return (span){at, at + (bytes == 0 && *at ? 1 : bytes)};
-}
-
 /* The block of the view of that name, in text without errors. */
 static bool find_view(const char *text, const char *name, span *out)
 {
     bool is_view = false, is_ours = false;
     int depth = 0;
-    for (span word = next_word(text); word.begin < word.end; word = next_word(word.end)) {
-        depth += is_word(word, "{") ? 1 : is_word(word, "}") ? -1 : 0;
-        out->end = word.end;
-        if (is_ours && depth == 0 && is_word(word, "}"))
+    fl_lexer lexer;
+    fl_lexer_init(&lexer, text, strlen(text));
+    for (fl_token token; (token = fl_lexer_next(&lexer)).kind != FL_TOKEN_END;) {
+        bool is_end = token.kind == FL_TOKEN_CLOSE_BRACE;
+        depth += token.kind == FL_TOKEN_OPEN_BRACE ? 1 : is_end ? -1 : 0;
+        out->end = token.text + token.bytes;
+        if (is_ours && depth == 0 && is_end)
             return true;
-        if (depth > 0)
+        if (depth > 0 || token.kind == FL_TOKEN_COMMENT)
             continue;
-        is_ours = is_view && is_word(word, name);
-        is_view = is_word(word, "View");
+        is_ours = is_view && fl_token_is(&token, name);
+        is_view = fl_token_is(&token, "View");
         if (is_view)
-            out->begin = word.begin;
+            out->begin = token.text;
     }
     return false;
 }
