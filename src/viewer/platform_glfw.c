@@ -60,17 +60,12 @@ static void on_cursor(GLFWwindow *window, double x, double y)
 
 static int held_mods(GLFWwindow *window)
 {
-    static const struct {
-        int key, mod;
-    } keys[] = {
-        {GLFW_KEY_LEFT_SHIFT, GLFW_MOD_SHIFT},     {GLFW_KEY_RIGHT_SHIFT, GLFW_MOD_SHIFT},
-        {GLFW_KEY_LEFT_CONTROL, GLFW_MOD_CONTROL}, {GLFW_KEY_RIGHT_CONTROL, GLFW_MOD_CONTROL},
-        {GLFW_KEY_LEFT_ALT, GLFW_MOD_ALT},         {GLFW_KEY_RIGHT_ALT, GLFW_MOD_ALT},
-    };
+    static const int keys[] = {GLFW_KEY_LEFT_SHIFT,    GLFW_KEY_RIGHT_SHIFT, GLFW_KEY_LEFT_CONTROL,
+                               GLFW_KEY_RIGHT_CONTROL, GLFW_KEY_LEFT_ALT,    GLFW_KEY_RIGHT_ALT};
     int mods = 0;
     for (size_t i = 0; i < FL_COUNT_OF(keys); i++)
-        if (glfwGetKey(window, keys[i].key) == GLFW_PRESS)
-            mods |= keys[i].mod;
+        if (glfwGetKey(window, keys[i]) == GLFW_PRESS)
+            mods |= vw_key_modifier(keys[i]);
     return mods;
 }
 
