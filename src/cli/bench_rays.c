@@ -43,18 +43,6 @@ static bool allocate(bench_rays *r, uint32_t capacity)
     return true;
 }
 
-static void put(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
-{
-    rays->ox[i] = (float)o.x;
-    rays->oy[i] = (float)o.y;
-    rays->oz[i] = (float)o.z;
-    rays->dx[i] = (float)d.x;
-    rays->dy[i] = (float)d.y;
-    rays->dz[i] = (float)d.z;
-    rays->t_max[i] = t_max;
-    rays->source_object[i] = rays->source_prim[i] = FL_NONE;
-}
-
 /* Pixel number i in tiles of 8x8, within them in blocks of 4x2. */
 static void pixel_at(uint32_t i, uint32_t side, uint32_t *x, uint32_t *y)
 {
@@ -82,7 +70,7 @@ static void generate_camera(bench_rays *out, fl_vec3 shift, uint32_t side)
             o = fl_v3_add(o, lens);
             d = fl_v3_mad(d, lens, -1.0 / focus);
         }
-        put(&out->rays, i, o, d, INFINITY);
+        fl_rays_set(&out->rays, i, o, d, INFINITY);
     }
     out->rays.count = side * side;
 }
@@ -126,15 +114,15 @@ static void generate_secondary(bench_rays *out, const bench_mesh *mesh, fl_vec3 
             n = fl_v3_scale(n, -1.0);
         fl_vec3 p = fl_v3_mad(fl_v3_mad(o, d, (double)primary->hits.t[i]), n, leave);
         if (out->kind == BENCH_MIRROR) {
-            put(&out->rays, count++, p, fl_v3_mad(d, n, -2.0 * fl_v3_dot(n, d)), INFINITY);
+            fl_rays_set(&out->rays, count++, p, fl_v3_mad(d, n, -2.0 * fl_v3_dot(n, d)), INFINITY);
         } else if (out->kind == BENCH_INCOHERENT) {
-            put(&out->rays, count++, p, cosine_direction(n, i), INFINITY);
+            fl_rays_set(&out->rays, count++, p, cosine_direction(n, i), INFINITY);
         } else {
             double r = light_radius * sqrt(unit_number(i, 2)), turn = two_pi * unit_number(i, 3);
             fl_vec3 at = fl_v3_mad(fl_v3_mad(light, a, r * cos(turn)), b, r * sin(turn));
             fl_vec3 way = fl_v3_sub(fl_v3_sub(at, shift), p);
             if (fl_v3_dot(way, n) > 0.0) /* Others are dark without a ray. */
-                put(&out->rays, count++, p, way, 0.9999f);
+                fl_rays_set(&out->rays, count++, p, way, 0.9999f);
         }
     }
     out->rays.count = count;
@@ -151,7 +139,7 @@ bool bench_rays_create(const bench_mesh *mesh, const fl_compiled *scene, bench_k
     else
         generate_secondary(out, mesh, scene->geometry.origin, primary);
     for (uint32_t i = out->rays.count; i % 8 != 0; i++)
-        put(&out->rays, i, fl_v3(0, 0, 0), fl_v3(0, 0, 1), -1.0f);
+        fl_rays_set(&out->rays, i, fl_v3(0, 0, 0), fl_v3(0, 0, 1), -1.0f);
     return true;
 }
 

@@ -161,14 +161,7 @@ static void aim_ray(range *r, uint32_t i, uint64_t number)
     }
     fl_vec3 o = fl_affine_point(&r->to_world, from);
     fl_vec3 d = fl_v3_sub(fl_affine_point(&r->to_world, target), o);
-    r->rays.ox[i] = (float)o.x;
-    r->rays.oy[i] = (float)o.y;
-    r->rays.oz[i] = (float)o.z;
-    r->rays.dx[i] = (float)d.x;
-    r->rays.dy[i] = (float)d.y;
-    r->rays.dz[i] = (float)d.z;
-    r->rays.t_max[i] = (float)end;
-    r->rays.source_object[i] = r->rays.source_prim[i] = FL_NONE;
+    fl_rays_set(&r->rays, i, o, d, (float)end);
 }
 
 bool extreme_rays(const extreme_aim *aim, extreme_result *out)

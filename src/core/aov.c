@@ -102,7 +102,7 @@ static bool eval_hits(const fl_frame *frame, fl_aov kind, const double lens[2],
             pixel_of(frame, grid, begin + i, &x, &y);
             fl_frame_ray(frame, x + 0.5, y + 0.5, lens ? lens[0] : 0.0, lens ? lens[1] : 0.0,
                          &origin, &direction);
-            fl_piece_set_ray(&p.rays, i, origin, direction, INFINITY);
+            fl_rays_set(&p.rays, i, origin, direction, INFINITY);
         }
         fl_piece_set_count(&p.rays, n);
         kernels->nearest(&scene->geometry, &p.rays, &p.hits, &context);

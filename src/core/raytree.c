@@ -240,8 +240,8 @@ bool fl_raytree_find_blockers(const fl_frame *frame, fl_raytree *tree)
         if (l->arrives[0] == l->sends[0] && l->arrives[1] == l->sends[1] &&
             l->arrives[2] == l->sends[2])
             continue;
-        fl_piece_set_ray(&p.rays, 0, fl_v3((double)l->o[0], (double)l->o[1], (double)l->o[2]),
-                         fl_v3((double)l->d[0], (double)l->d[1], (double)l->d[2]), l->t_max);
+        fl_rays_set(&p.rays, 0, fl_v3((double)l->o[0], (double)l->o[1], (double)l->o[2]),
+                    fl_v3((double)l->d[0], (double)l->d[1], (double)l->d[2]), l->t_max);
         p.rays.source_object[0] = tree->nodes[l->node].object;
         p.rays.source_prim[0] = tree->nodes[l->node].prim;
         fl_piece_set_count(&p.rays, 1);

@@ -18,6 +18,19 @@ typedef struct fl_rays {
     uint32_t *source_object, *source_prim; /**< Surface the ray starts on; FL_NONE: none (decision 13). */
 } fl_rays;
 
+/** Make ray i one that starts on no surface; `count` stays. */
+static inline void fl_rays_set(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
+{
+    rays->ox[i] = (float)o.x;
+    rays->oy[i] = (float)o.y;
+    rays->oz[i] = (float)o.z;
+    rays->dx[i] = (float)d.x;
+    rays->dy[i] = (float)d.y;
+    rays->dz[i] = (float)d.z;
+    rays->t_max[i] = t_max;
+    rays->source_object[i] = rays->source_prim[i] = FL_NONE;
+}
+
 /** Nearest hits, index for index with the rays. */
 typedef struct fl_hits {
     float *t;

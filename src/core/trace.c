@@ -52,23 +52,11 @@ bool fl_piece_init(fl_piece *p, uint32_t capacity)
     return true;
 }
 
-void fl_piece_set_ray(fl_rays *rays, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
-{
-    rays->ox[i] = (float)o.x;
-    rays->oy[i] = (float)o.y;
-    rays->oz[i] = (float)o.z;
-    rays->dx[i] = (float)d.x;
-    rays->dy[i] = (float)d.y;
-    rays->dz[i] = (float)d.z;
-    rays->t_max[i] = t_max;
-    rays->source_object[i] = rays->source_prim[i] = FL_NONE;
-}
-
 void fl_piece_set_count(fl_rays *rays, uint32_t count)
 {
     rays->count = count;
     for (uint32_t i = count; i % 8 != 0; i++)
-        fl_piece_set_ray(rays, i, fl_v3(0.0, 0.0, 0.0), fl_v3(0.0, 0.0, 1.0), -1.0f);
+        fl_rays_set(rays, i, fl_v3(0.0, 0.0, 0.0), fl_v3(0.0, 0.0, 1.0), -1.0f);
 }
 
 static void fill_pick(const fl_frame *frame, const fl_piece *p, fl_vec3 origin, fl_vec3 direction,
@@ -99,7 +87,7 @@ bool fl_trace_pick(const fl_frame *frame, double x_px, double y_px, fl_pick *out
     /* Through the centre of the lens: the pinhole ray whatever the aperture. */
     fl_vec3 origin, direction;
     fl_frame_ray(frame, x_px, y_px, 0.0, 0.0, &origin, &direction);
-    fl_piece_set_ray(&p.rays, 0, origin, direction, INFINITY);
+    fl_rays_set(&p.rays, 0, origin, direction, INFINITY);
     fl_piece_set_count(&p.rays, 1);
     const fl_compiled *scene = frame->scene;
     const fl_isect_kernels *kernels = fl_trace_kernels(scene);
@@ -122,8 +110,8 @@ static void load_piece(fl_piece *p, const fl_compiled *scene, const float *origi
         const float *o = origins + 3 * (begin + i), *d = directions + 3 * (begin + i);
         fl_vec3 origin =
             fl_v3_sub(fl_v3((double)o[0], (double)o[1], (double)o[2]), scene->geometry.origin);
-        fl_piece_set_ray(&p->rays, i, origin, fl_v3((double)d[0], (double)d[1], (double)d[2]),
-                         t_max ? t_max[begin + i] : INFINITY);
+        fl_rays_set(&p->rays, i, origin, fl_v3((double)d[0], (double)d[1], (double)d[2]),
+                    t_max ? t_max[begin + i] : INFINITY);
     }
     fl_piece_set_count(&p->rays, count);
 }

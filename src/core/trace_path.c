@@ -75,7 +75,7 @@ static bool step(walk *w, const fl_shader *shader, bool is_refracted, bool may_r
     double side = fl_v3_dot(ng, next) < 0.0 ? -1.0 : 1.0;
     fl_vec3 at = fl_v3((double)s->px[0], (double)s->py[0], (double)s->pz[0]);
     uint32_t object = w->piece.hits.object[0], prim = w->piece.hits.prim[0];
-    fl_piece_set_ray(rays, 0, fl_v3_mad(at, ng, side * (double)s->offset[0]), next, INFINITY);
+    fl_rays_set(rays, 0, fl_v3_mad(at, ng, side * (double)s->offset[0]), next, INFINITY);
     rays->source_object[0] = object;
     rays->source_prim[0] = prim;
     return true;
@@ -127,8 +127,8 @@ static double spread(walk *w, double x_px, double y_px, double radius, double fo
         fl_vec3 lens = fl_v3_mad(fl_v3_scale(frame->axis_h, corner[i][0] * radius), frame->axis_v,
                                  corner[i][1] * radius);
         fl_trace_seen seen;
-        fl_piece_set_ray(&w->piece.rays, 0, fl_v3_add(eye, lens),
-                         fl_v3_mad(straight, lens, -1.0 / focus), INFINITY);
+        fl_rays_set(&w->piece.rays, 0, fl_v3_add(eye, lens),
+                    fl_v3_mad(straight, lens, -1.0 / focus), INFINITY);
         if (!follow(w, same, &seen))
             return (double)INFINITY;
         end[i] = seen.position;
@@ -185,7 +185,7 @@ bool fl_trace_focus(const fl_frame *frame, double x_px, double y_px, double *out
         return false;
     fl_vec3 origin, direction;
     fl_frame_ray(frame, x_px, y_px, 0.0, 0.0, &origin, &direction);
-    fl_piece_set_ray(&w.piece.rays, 0, origin, direction, INFINITY);
+    fl_rays_set(&w.piece.rays, 0, origin, direction, INFINITY);
     if (!frame->is_orthographic && follow(&w, NULL, out_seen) && out_seen->first_depth > 0.0)
         *out_focus = out_seen->bounces ? search(&w, x_px, y_px, out_seen) : out_seen->first_depth;
     out_seen->position = fl_v3_add(out_seen->position, frame->scene->geometry.origin);

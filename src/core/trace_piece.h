@@ -20,8 +20,6 @@ typedef struct fl_piece {
 bool fl_piece_init(fl_piece *piece, uint32_t capacity);
 void fl_piece_deinit(fl_piece *piece);
 
-/** A ray that starts on no surface. */
-void fl_piece_set_ray(fl_rays *rays, uint32_t i, fl_vec3 origin, fl_vec3 direction, float t_max);
 /** Entries up to the next multiple of 8 become rays that hit nothing. */
 void fl_piece_set_count(fl_rays *rays, uint32_t count);
 

@@ -19,6 +19,7 @@
 #include "cli/extremes.h"
 #include "core/double_trace.h"
 #include "core/trace_piece.h"
+#include "support/rounded.h"
 
 enum { PIECE = 1024 };
 
@@ -100,13 +101,6 @@ static double unit(bench *b)
     return (double)(b->random >> 40) * 0x1p-24;
 }
 
-/* Through memory: gcc 12 makes vectors of neighbours and then drops the way through floats. */
-static double rounded(double x)
-{
-    volatile float f = (float)x;
-    return (double)f;
-}
-
 static fl_vec3 direction(bench *b)
 {
     for (;;) {
@@ -180,7 +174,7 @@ static void first_hits(bench *b)
         double away = i % 8 == 0 ? 100.0 : 3.0;
         fl_vec3 from = fl_v3_mad(b->center, direction(b), away * b->size);
         fl_vec3 to = fl_v3_mad(b->center, direction(b), b->size * unit(b));
-        fl_piece_set_ray(&b->piece.rays, i, from, fl_v3_sub(to, from), INFINITY);
+        fl_rays_set(&b->piece.rays, i, from, fl_v3_sub(to, from), INFINITY);
     }
     fl_piece_set_count(&b->piece.rays, PIECE);
     kernels->nearest(&b->compiled->geometry, &b->piece.rays, &b->piece.hits, &context);
@@ -230,7 +224,7 @@ static uint32_t leave(bench *b, leaving *out)
     for (uint32_t i = 0; i < count; i++) {
         const leaving *l = &out[i];
         double step = copysign(l->offset, fl_v3_dot(l->ng, l->d));
-        fl_piece_set_ray(r, i, fl_v3_mad(l->p, l->ng, step), l->d, INFINITY);
+        fl_rays_set(r, i, fl_v3_mad(l->p, l->ng, step), l->d, INFINITY);
         r->source_object[i] = l->object;
         r->source_prim[i] = l->prim;
     }

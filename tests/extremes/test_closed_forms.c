@@ -18,6 +18,7 @@
 #include "core/frame.h"
 #include "core/raytree.h"
 #include "core/trace_piece.h"
+#include "support/rounded.h"
 
 enum { RAYS = 20000 };
 
@@ -79,13 +80,6 @@ static both trace(const fl_compiled *compiled, fl_vec3 o, fl_vec3 d)
     out.in_float = object != FL_NONE;
     out.t_float = (double)t;
     return out;
-}
-
-/* Through memory: gcc 12 makes vectors of neighbours and then drops the way through floats. */
-static double rounded(double x)
-{
-    volatile float f = (float)x;
-    return (double)f;
 }
 
 /* --- Spheres -----------------------------------------------------------------------------------

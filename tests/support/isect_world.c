@@ -317,28 +317,16 @@ void world_rays_deinit(world_rays *r)
     free(r->memory);
 }
 
-static void set_ray(world_rays *r, uint32_t i, fl_vec3 o, fl_vec3 d, float t_max)
-{
-    r->rays.ox[i] = (float)o.x;
-    r->rays.oy[i] = (float)o.y;
-    r->rays.oz[i] = (float)o.z;
-    r->rays.dx[i] = (float)d.x;
-    r->rays.dy[i] = (float)d.y;
-    r->rays.dz[i] = (float)d.z;
-    r->rays.t_max[i] = t_max;
-    r->rays.source_object[i] = r->rays.source_prim[i] = FL_NONE;
-}
-
 void world_ray(world_rays *r, fl_vec3 o, fl_vec3 d)
 {
     assert_true(r->rays.count < r->rays.capacity);
-    set_ray(r, r->rays.count++, o, d, INFINITY);
+    fl_rays_set(&r->rays, r->rays.count++, o, d, INFINITY);
 }
 
 void world_rays_finish(world_rays *r)
 {
     for (uint32_t i = r->rays.count; i % 8 != 0; i++)
-        set_ray(r, i, fl_v3(0, 0, 0), fl_v3(0, 0, 1), -1.0f);
+        fl_rays_set(&r->rays, i, fl_v3(0, 0, 0), fl_v3(0, 0, 1), -1.0f);
 }
 
 const fl_isect_kernels *world_kernels(fl_isa isa)
