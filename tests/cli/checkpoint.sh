@@ -5,20 +5,10 @@
 set -u
 program=$1
 scene=$2/scenes/shadow-soft.txt
+. "$(dirname "$0")/kit.sh"
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-passed=0 failed=0
-
-check() { # WHAT EXPECTED GOT
-    if [ "$2" = "$3" ]; then
-        passed=$((passed + 1))
-    else
-        failed=$((failed + 1))
-        echo "FAIL: $1: expected $2, got $3"
-        cat stderr
-    fi
-}
 
 # film ARGUMENTS...: hash, error estimate and rays of a 64 x 64 render
 film() {

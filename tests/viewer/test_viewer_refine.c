@@ -4,8 +4,7 @@
  */
 #include "viewer_kit.h"
 
-#include <pthread.h>
-
+#include "support/bell.h"
 #include "viewer/words.h"
 
 static const char scene_text[] =
@@ -24,29 +23,14 @@ static uint32_t two_triangles = 2; /* For the loader: more are many. */
 
 enum { SAMPLES = 4, FLOATS = 3 * 40 * 30 };
 
-typedef struct bell {
-    pthread_mutex_t lock;
-    pthread_cond_t rung;
-    uint32_t count;
-} bell;
-
-static bell the_bell = {.lock = PTHREAD_MUTEX_INITIALIZER, .rung = PTHREAD_COND_INITIALIZER};
-
-static void ring(void *context)
-{
-    bell *b = context;
-    pthread_mutex_lock(&b->lock);
-    b->count++;
-    pthread_cond_broadcast(&b->rung);
-    pthread_mutex_unlock(&b->lock);
-}
+static bell the_bell = BELL_INITIALIZER;
 
 static void open_rung(vw_session *session, const vw_options *options, const char *path)
 {
     fl_diags diags = {0};
     assert_true(vw_session_open(session, options, path, 0, 0, &diags));
     session->state.look.sample_cap = SAMPLES;
-    assert_true(vw_session_start(session, ring, &the_bell, &diags));
+    assert_true(vw_session_start(session, bell_ring, &the_bell, &diags));
     assert_true(vw_session_restart(session, &diags));
     assert_int_equal(diags.count, 0);
 }
@@ -55,13 +39,8 @@ static void open_rung(vw_session *session, const vw_options *options, const char
 static void await_refined(vw_session *session)
 {
     uint32_t seen = 0;
-    while (!vw_session_take_refined(session)) {
-        pthread_mutex_lock(&the_bell.lock);
-        while (the_bell.count == seen)
-            pthread_cond_wait(&the_bell.rung, &the_bell.lock);
-        seen = the_bell.count;
-        pthread_mutex_unlock(&the_bell.lock);
-    }
+    while (!vw_session_take_refined(session))
+        seen = bell_wait(&the_bell, seen + 1);
 }
 
 static float *finished(vw_session *session)

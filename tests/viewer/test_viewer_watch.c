@@ -4,43 +4,12 @@
  */
 #include "viewer_kit.h"
 
-#include <pthread.h>
 #include <sys/stat.h>
 
+#include "support/bell.h"
 #include "viewer/watch.h"
 
-typedef struct bell {
-    pthread_mutex_t lock;
-    pthread_cond_t rung;
-    uint32_t count;
-} bell;
-
-static bell the_bell = {.lock = PTHREAD_MUTEX_INITIALIZER, .rung = PTHREAD_COND_INITIALIZER};
-
-static void ring(void *context)
-{
-    bell *b = context;
-    pthread_mutex_lock(&b->lock);
-    b->count++;
-    pthread_cond_signal(&b->rung);
-    pthread_mutex_unlock(&b->lock);
-}
-
-static uint32_t rung(void)
-{
-    pthread_mutex_lock(&the_bell.lock);
-    uint32_t count = the_bell.count;
-    pthread_mutex_unlock(&the_bell.lock);
-    return count;
-}
-
-static void wait_for(uint32_t count)
-{
-    pthread_mutex_lock(&the_bell.lock);
-    while (the_bell.count < count)
-        pthread_cond_wait(&the_bell.rung, &the_bell.lock);
-    pthread_mutex_unlock(&the_bell.lock);
-}
+static bell the_bell = BELL_INITIALIZER;
 
 /* What changed may be told in more than one piece. */
 static void wait_for_change(vw_watch *watch)
@@ -66,7 +35,7 @@ static void set(vw_watch *watch, const char *first, const char *second)
 static vw_watch *begin(void)
 {
     the_bell.count = 0;
-    return vw_watch_create(ring, &the_bell);
+    return vw_watch_create(bell_ring, &the_bell);
 }
 
 static void saved_files_ring_and_others_do_not(void **unused)
@@ -81,21 +50,21 @@ static void saved_files_ring_and_others_do_not(void **unused)
     assert_false(vw_watch_take(watch));
     write_file("other.txt", "1", other);
     write_file("watched.txt", "2", path);
-    wait_for(1);
+    bell_wait(&the_bell, 1);
     assert_true(vw_watch_take(watch));
     assert_false(vw_watch_take(watch));
     /* As editors do: a new file takes the place of the old one. */
     write_file("fresh.txt", "3", fresh);
     assert_int_equal(rename(fresh, path), 0);
-    wait_for(2);
+    bell_wait(&the_bell, 2);
     assert_true(vw_watch_take(watch));
     /* Watched no more; nothing to watch: as before. */
     set(watch, other, NULL);
     vw_watch_set(watch, &(fl_file_list){0});
     write_file("watched.txt", "4", path);
     write_file("other.txt", "2", other);
-    wait_for(3);
-    assert_int_equal(rung(), 3);
+    bell_wait(&the_bell, 3);
+    assert_int_equal(bell_wait(&the_bell, 0), 3);
     vw_watch_destroy(watch);
 }
 
@@ -173,14 +142,14 @@ static void a_new_file_is_news_when_it_is_whole(void **unused)
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     write_file("other.txt", "2", other);
-    wait_for(1);
-    assert_int_equal(rung(), 1);
+    bell_wait(&the_bell, 1);
+    assert_int_equal(bell_wait(&the_bell, 0), 1);
     fclose(file);
-    wait_for(2);
+    bell_wait(&the_bell, 2);
     unlink(path);
     write_file("fresh.txt", "1", fresh);
     assert_int_equal(link(fresh, path), 0);
-    wait_for(3);
+    bell_wait(&the_bell, 3);
     vw_watch_destroy(watch);
 }
 
@@ -204,7 +173,7 @@ static void a_change_before_the_watch_counts(void **unused)
         list.begin = status.st_ctim;
         list.begin.tv_sec += !is_late;
         vw_watch_set(watch, &list);
-        assert_int_equal(rung(), is_late);
+        assert_int_equal(bell_wait(&the_bell, 0), is_late);
         assert_int_equal(vw_watch_take(watch), is_late);
         /* What was watched meanwhile has been told. */
         list.begin.tv_sec -= 1000;
