@@ -98,18 +98,34 @@ typedef enum cli_command_id {
 /** What the user asked for. Strings are borrowed from argv. A value counts only when its bit is given. */
 typedef struct cli_options {
     uint64_t given; /**< Bit per cli_option_id. */
-    uint32_t size[2], crop[4], pixel[3];
-    uint32_t samples, light_samples, depth, seed, threads, octree_height, quick_above, repeats, revolve_starts;
-    double time_s, budget_s, noise, scale, aperture, focus, exposure_ev, weight_threshold;
+    uint32_t size[2];  /**< Width, height; pixels. */
+    uint32_t crop[4];  /**< x, y from the upper left corner, width, height; pixels. */
+    uint32_t pixel[3]; /**< x, y, number of the sample. */
+    uint32_t samples;  /**< A pixel. */
+    uint32_t light_samples; /**< A hit and light; CLI_AUTO: chosen by where the noise comes from. */
+    uint32_t depth;         /**< Bounces. */
+    uint32_t seed, threads;
+    uint32_t octree_height;  /**< Levels. */
+    uint32_t quick_above;    /**< Triangles of a mesh, fl_compile_options. */
+    uint32_t repeats;        /**< Of a timing, or of a study's renders. */
+    uint32_t revolve_starts; /**< Of Newton's method, a segment of the curve. */
+    double time_s, budget_s; /**< Seconds on the wall: of a render, of a whole study. */
+    double noise;            /**< Root mean square error to stop at, linear radiance. */
+    double scale;            /**< Of width and height. */
+    double aperture, focus;  /**< Radius of the lens, distance of the focus plane; scene units. */
+    double exposure_ev;      /**< Stops. */
+    double weight_threshold; /**< Least weight of a ray that is followed. */
     double camera[10]; /**< eye, look-at point, up, vertical field of view in degrees */
     uint32_t adaptive, sampler, solver, precision, accel, dialect; /**< Values of the core's enums. */
-    const char *outputs[CLI_OUTPUTS_MAX];
+    const char *outputs[CLI_OUTPUTS_MAX]; /**< Pictures to write. */
     uint32_t output_count;
+    /** Names of files and folders, and words, as they were written. */
     const char *checkpoint, *aov, *report, *out_dir, *sweep, *record, *keys, *pin, *platform, *shader_dir, *isa, *against;
     const char **paths; /**< Arguments that are no options; points into argv. */
     uint32_t path_count;
 } cli_options;
 
+/** Whether an option was given. */
 static inline bool cli_has(const cli_options *options, cli_option_id id)
 {
     return options->given >> id & 1u;
