@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * usage: self_hits [RAYS]     rays a kind of primitive, default 1e6
+ * usage: self_hits [RAYS [NAME]]     rays a kind, default 1e6; only kinds with NAME in theirs
  *
  * Rays that leave a surface as the renderer lets them leave (decision 13): how many meet again what
  * they cannot meet (false), and how many miss what they must meet (lost). Scales 1e-6, 1, 1e6; 0,
@@ -394,12 +394,17 @@ static uint64_t report(const kind *k, bool is_beside, const tally *t)
 int main(int argc, char **argv)
 {
     uint64_t rays = argc > 1 ? (uint64_t)atof(argv[1]) : 1000000, wrong = 0;
+    const char *wanted = argc > 2 ? argv[2] : "";
+    unsigned run = 0;
     for (size_t i = 0; i < FL_COUNT_OF(kinds); i++)
-        for (int is_beside = 0; is_beside < 2; is_beside++) {
+        for (int is_beside = 0; is_beside < 2 && strstr(kinds[i].name, wanted); is_beside++) {
             tally t = {0};
             if (!run_kind(&kinds[i], is_beside, rays, &t))
                 return 2;
             wrong += report(&kinds[i], is_beside, &t);
+            run++;
         }
-    return wrong ? 1 : 0;
+    if (run == 0)
+        fprintf(stderr, "self_hits: no kind has '%s' in its name\n", wanted);
+    return wrong || run == 0;
 }
