@@ -101,12 +101,15 @@ static bool find_view(const char *text, const char *name, span *out)
 /* The comment that holds a slot's lights, to the end of its line. */
 static bool find_lights(const char *text, const char *name, span *out)
 {
-    static const char mark[] = "# lights ";
-    for (const char *at = text; (at = strstr(at, mark)); at += sizeof mark - 1) {
-        const char *numbers = at + sizeof mark - 1;
-        *out = (span){at, numbers + strcspn(numbers, "\n")};
-        if (numbers[0] == name[0] && numbers[1] == ' ')
-            return true;
+    char mark[16];
+    int length = snprintf(mark, sizeof mark, "# lights %s ", name);
+    fl_lexer lexer;
+    fl_lexer_init(&lexer, text, strlen(text));
+    for (fl_token token; (token = fl_lexer_next(&lexer)).kind != FL_TOKEN_END;) {
+        if (token.kind != FL_TOKEN_COMMENT || strncmp(token.text, mark, (size_t)length) != 0)
+            continue;
+        *out = (span){token.text, token.text + strcspn(token.text, "\n")};
+        return true;
     }
     return false;
 }
