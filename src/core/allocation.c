@@ -71,15 +71,11 @@ struct fl_allocation {
     giving_plan plans[GIVING_COUNT];
 };
 
-static uint32_t ceil_div(uint32_t a, uint32_t b)
-{
-    return a / b + (a % b != 0);
-}
-
 static uint32_t tile_side(uint32_t width, uint32_t height)
 {
     uint32_t side = TILE_SIDE;
-    while (side > TILE_SIDE_MIN && ceil_div(width, side) * ceil_div(height, side) < FL_TILES_FEW)
+    while (side > TILE_SIDE_MIN &&
+           fl_ceil_div(width, side) * fl_ceil_div(height, side) < FL_TILES_FEW)
         side /= 2;
     return side;
 }
@@ -87,7 +83,7 @@ static uint32_t tile_side(uint32_t width, uint32_t height)
 static uint32_t count_tiles(uint32_t width, uint32_t height)
 {
     uint32_t side = tile_side(width, height);
-    return ceil_div(width, side) * ceil_div(height, side);
+    return fl_ceil_div(width, side) * fl_ceil_div(height, side);
 }
 
 bool fl_allocation_bytes(uint32_t width, uint32_t height, size_t *out_bytes)
@@ -110,7 +106,7 @@ fl_allocation *fl_allocation_create(uint32_t width, uint32_t height)
     a->height = height;
     a->pixels = (uint64_t)width * height;
     a->tile_side = tile_side(width, height);
-    a->columns = ceil_div(width, a->tile_side);
+    a->columns = fl_ceil_div(width, a->tile_side);
     a->tile_count = count_tiles(width, height);
     a->squares = malloc(a->pixels * sizeof *a->squares);
     a->variance = malloc(a->pixels * sizeof *a->variance);
@@ -259,8 +255,8 @@ static uint32_t list_pixels(const fl_allocation *a, const fl_film *film, const f
                             uint16_t *out_y)
 {
     enum { SQUARE = 8 };
-    uint32_t count = 0, squares_x = ceil_div(r->x1 - r->x0, SQUARE);
-    uint32_t squares = squares_x * ceil_div(r->y1 - r->y0, SQUARE), samples[SQUARE];
+    uint32_t count = 0, squares_x = fl_ceil_div(r->x1 - r->x0, SQUARE);
+    uint32_t squares = squares_x * fl_ceil_div(r->y1 - r->y0, SQUARE), samples[SQUARE];
     for (uint32_t s = 0; s < squares && count + SQUARE * SQUARE <= FL_UNIT_PIXELS; s++) {
         uint32_t begin_x = r->x0 + s % squares_x * SQUARE, begin_y = r->y0 + s / squares_x * SQUARE;
         uint32_t end_x = fl_min_u32(begin_x + SQUARE, r->x1);

@@ -87,7 +87,7 @@ static bool eval_hits(const fl_frame *frame, fl_aov kind, const double lens[2],
                       const fl_aov_grid *grid, float *out_values)
 {
     const fl_compiled *scene = frame->scene;
-    const fl_isect_kernels *kernels = fl_trace_kernels(scene);
+    const fl_isect_kernels *kernels = fl_isect_kernels_of(scene->isa);
     fl_isect_context context = {.solver = frame->params.solver};
     bool wants_surface = kind != FL_AOV_DEPTH && kind != FL_AOV_OBJECT;
     size_t count = (size_t)grid->width * grid->height;

@@ -31,6 +31,12 @@ static inline uint32_t fl_max_u32(uint32_t a, uint32_t b)
     return a > b ? a : b;
 }
 
+/** a / b, rounded up. */
+static inline uint32_t fl_ceil_div(uint32_t a, uint32_t b)
+{
+    return a / b + (a % b != 0);
+}
+
 /* min and max of floating-point values are spelled out, not left to libm: which operand survives
  * when one is NaN must not depend on the instruction set (decision 2). NaN in `a` yields `b`. */
 static inline double fl_min(double a, double b)

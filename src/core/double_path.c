@@ -176,15 +176,6 @@ static fl_vec3 reflectance(const path *p, const spot *at, fl_vec3 to_light)
                      fl_d_pow(fl_clamp(r_l, 0.0, 1.0), (double)at->shader->shininess));
 }
 
-/* Orthonormal basis of the plane with unit normal n, as frame.c has it. [Duff and others 2017] */
-static void plane_basis(fl_vec3 n, fl_vec3 *out_u, fl_vec3 *out_v)
-{
-    double sign = copysign(1.0, n.z);
-    double a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-    *out_u = fl_v3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    *out_v = fl_v3(b, sign + n.y * n.y * a, -n.y);
-}
-
 static fl_vec3 light_point(path *p, const spot *at, const fl_frame_light *use,
                            const fl_light *light, uint32_t j)
 {
@@ -197,7 +188,7 @@ static fl_vec3 light_point(path *p, const spot *at, const fl_frame_light *use,
     uint32_t freeze = at->path == FL_PATH_CAMERA ? fl_freeze_light(use->index) : FL_FREEZE_DEEPER;
     uint32_t index = (params->frozen & freeze ? 0 : p->sample) * use->samples + j;
     uint32_t strata = params->strata * use->samples;
-    plane_basis(fl_v3_normalize(light->direction), &u, &v);
+    fl_v3_basis(fl_v3_normalize(light->direction), &u, &v);
     warp_disk(number(p, set, index, 0, strata), number(p, set, index, 1, strata), &x, &y);
     p->counts.sample_dimensions += 2;
     return fl_v3_mad(fl_v3_mad(center, u, x * light->radius), v, y * light->radius);

@@ -68,22 +68,13 @@ static void prepare_picture(fl_frame *frame)
     frame->height = is_cropped ? p->crop_h : p->height;
 }
 
-/* Orthonormal basis of the plane with unit normal n. [Duff and others 2017] */
-static void plane_basis(fl_vec3 n, fl_vec3 *out_u, fl_vec3 *out_v)
-{
-    double sign = copysign(1.0, n.z);
-    double a = -1.0 / (sign + n.z), b = n.x * n.y * a;
-    *out_u = fl_v3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
-    *out_v = fl_v3(b, sign + n.y * n.y * a, -n.y);
-}
-
 static void prepare_light(fl_frame *frame, uint32_t index)
 {
     const fl_params *p = &frame->params;
     const fl_light *light = &p->lights[index];
     fl_frame_light *out = &frame->lights[index];
     fl_vec3 normal = fl_v3_normalize(light->direction), u, v;
-    plane_basis(normal, &u, &v);
+    fl_v3_basis(normal, &u, &v);
 
     *out = (fl_frame_light){.kind = light->kind, .index = index, .samples = 1};
     out->is_two_sided = light->kind != FL_LIGHT_DISK || light->is_two_sided;

@@ -278,21 +278,6 @@ static void check_samples(fl_pipe *pipe)
     pipe->counts.samples += pipe->unit->count;
 }
 
-static const fl_isect_kernels *isect_kernels(fl_isa isa)
-{
-#if defined(__x86_64__)
-    if (isa == FL_ISA_AVX2)
-        return &fl_isect_kernels_avx2;
-    if (isa == FL_ISA_SSE2)
-        return &fl_isect_kernels_sse2;
-#elif defined(__aarch64__)
-    if (isa == FL_ISA_NEON)
-        return &fl_isect_kernels_neon;
-#endif
-    FL_ASSERT(isa == FL_ISA_SCALAR);
-    return &fl_isect_kernels_scalar;
-}
-
 static const fl_shade_kernels *shade_kernels(fl_isa isa)
 {
 #if defined(__x86_64__)
@@ -320,7 +305,7 @@ bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *w
         .frame = frame,
         .unit = unit,
         .work = workspace,
-        .isect = isect_kernels(frame->scene->isa),
+        .isect = fl_isect_kernels_of(frame->scene->isa),
         .shade = shade_kernels(frame->scene->isa),
         .context = {.solver = frame->params.solver, .generation = generation, .wanted = wanted},
         .lap = fl_ticks(),

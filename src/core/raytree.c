@@ -245,7 +245,7 @@ bool fl_raytree_find_blockers(const fl_frame *frame, fl_raytree *tree)
         p.rays.source_object[0] = tree->nodes[l->node].object;
         p.rays.source_prim[0] = tree->nodes[l->node].prim;
         fl_piece_set_count(&p.rays, 1);
-        fl_trace_kernels(scene)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
+        fl_isect_kernels_of(scene->isa)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
         l->blocker = p.hits.object[0];
         l->blocker_t = (double)p.hits.t[0];
     }

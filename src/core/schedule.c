@@ -74,14 +74,9 @@ static void bayer_position(uint32_t rank, uint32_t *out_x, uint32_t *out_y)
     *out_y = y;
 }
 
-static uint32_t ceil_div(uint32_t a, uint32_t b)
-{
-    return a / b + (a % b != 0);
-}
-
 static uint32_t tile_side(uint32_t width, uint32_t height)
 {
-    uint32_t count = ceil_div(width, FL_TILE_SIDE) * ceil_div(height, FL_TILE_SIDE);
+    uint32_t count = fl_ceil_div(width, FL_TILE_SIDE) * fl_ceil_div(height, FL_TILE_SIDE);
     return count < FL_TILES_FEW ? FL_TILE_SIDE / 2 : FL_TILE_SIDE;
 }
 
@@ -89,9 +84,9 @@ bool fl_schedule_bytes(uint32_t width, uint32_t height, size_t *out_bytes)
 {
     if (width > UINT16_MAX || height > UINT16_MAX)
         return false;
-    size_t cells = (size_t)ceil_div(width, FL_CELL_SIDE) * ceil_div(height, FL_CELL_SIDE);
+    size_t cells = (size_t)fl_ceil_div(width, FL_CELL_SIDE) * fl_ceil_div(height, FL_CELL_SIDE);
     uint32_t side = tile_side(width, height);
-    size_t tiles = (size_t)ceil_div(width, side) * ceil_div(height, side);
+    size_t tiles = (size_t)fl_ceil_div(width, side) * fl_ceil_div(height, side);
     *out_bytes = sizeof(fl_schedule) + (cells + 1) * sizeof(cell) +
                  tiles * (sizeof(tile) + sizeof(uint32_t));
     return true;
@@ -159,8 +154,8 @@ fl_schedule *fl_schedule_create(uint32_t width, uint32_t height)
     uint32_t side = tile_side(width, height);
     schedule->width = width;
     schedule->height = height;
-    schedule->cell_count = ceil_div(width, FL_CELL_SIDE) * ceil_div(height, FL_CELL_SIDE);
-    schedule->tile_count = ceil_div(width, side) * ceil_div(height, side);
+    schedule->cell_count = fl_ceil_div(width, FL_CELL_SIDE) * fl_ceil_div(height, FL_CELL_SIDE);
+    schedule->tile_count = fl_ceil_div(width, side) * fl_ceil_div(height, side);
     schedule->cap = UINT32_MAX;
     uint32_t cell_tiles = FL_CELL_SIDE / side * (FL_CELL_SIDE / side);
     schedule->cells = calloc(schedule->cell_count + 1, sizeof *schedule->cells);
@@ -331,7 +326,7 @@ static void advance_tile(fl_schedule *schedule, uint32_t index)
 
 static uint32_t steps(uint32_t begin, uint32_t end, uint32_t step)
 {
-    return ceil_div(end - begin, step);
+    return fl_ceil_div(end - begin, step);
 }
 
 bool fl_schedule_commit(fl_schedule *schedule, const fl_work *work, fl_rect *out_rect)

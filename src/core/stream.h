@@ -9,6 +9,7 @@
 
 #include <stdatomic.h>
 
+#include "core/cpu.h"
 #include "core/geometry.h"
 
 /** Rays o + t d with 0 < t < t_max, in the space of fl_geometry. d has any length. */
@@ -90,5 +91,8 @@ extern const fl_isect_kernels fl_isect_kernels_sse2, fl_isect_kernels_avx2;
 #elif defined(__aarch64__)
 extern const fl_isect_kernels fl_isect_kernels_neon;
 #endif
+
+/** Those of an instruction set that this build has. */
+const fl_isect_kernels *fl_isect_kernels_of(fl_isa isa);
 
 #endif

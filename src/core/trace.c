@@ -11,21 +11,6 @@ enum {
     SURFACE_ARRAYS = 12 /* px..pz ngx..ngz nsx..nsz offset u v */
 };
 
-const fl_isect_kernels *fl_trace_kernels(const fl_compiled *scene)
-{
-    static const fl_isect_kernels *const table[FL_ISA_COUNT] = {
-        [FL_ISA_SCALAR] = &fl_isect_kernels_scalar,
-#if defined(__x86_64__)
-        [FL_ISA_SSE2] = &fl_isect_kernels_sse2,
-        [FL_ISA_AVX2] = &fl_isect_kernels_avx2,
-#elif defined(__aarch64__)
-        [FL_ISA_NEON] = &fl_isect_kernels_neon,
-#endif
-    };
-    FL_ASSERT(table[scene->isa]);
-    return table[scene->isa];
-}
-
 void fl_piece_deinit(fl_piece *p)
 {
     free(p->memory);
@@ -90,7 +75,7 @@ bool fl_trace_pick(const fl_frame *frame, double x_px, double y_px, fl_pick *out
     fl_rays_set(&p.rays, 0, origin, direction, INFINITY);
     fl_piece_set_count(&p.rays, 1);
     const fl_compiled *scene = frame->scene;
-    const fl_isect_kernels *kernels = fl_trace_kernels(scene);
+    const fl_isect_kernels *kernels = fl_isect_kernels_of(scene->isa);
     fl_isect_context context = {.solver = frame->params.solver};
     kernels->nearest(&scene->geometry, &p.rays, &p.hits, &context);
     *out_pick = (fl_pick){.object = FL_NONE, .prim = FL_NONE};
@@ -135,7 +120,7 @@ bool fl_trace_nearest(const fl_compiled *scene, const float *origins, const floa
     for (size_t begin = 0; begin < count; begin += PIECE_RAYS) {
         uint32_t n = count - begin < PIECE_RAYS ? (uint32_t)(count - begin) : PIECE_RAYS;
         load_piece(&p, scene, origins, directions, NULL, begin, n);
-        fl_trace_kernels(scene)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
+        fl_isect_kernels_of(scene->isa)->nearest(&scene->geometry, &p.rays, &p.hits, &context);
         for (uint32_t i = 0; i < n; i++) {
             if (out_t)
                 out_t[begin + i] = p.hits.t[i];
@@ -160,7 +145,7 @@ bool fl_trace_any(const fl_compiled *scene, const float *origins, const float *d
     for (size_t begin = 0; begin < count; begin += PIECE_RAYS) {
         uint32_t n = count - begin < PIECE_RAYS ? (uint32_t)(count - begin) : PIECE_RAYS;
         load_piece(&p, scene, origins, directions, t_max, begin, n);
-        fl_trace_kernels(scene)->any(&scene->geometry, &p.rays, p.hits.object, &context);
+        fl_isect_kernels_of(scene->isa)->any(&scene->geometry, &p.rays, p.hits.object, &context);
         for (uint32_t i = 0; i < n; i++)
             out_blocked[begin + i] = p.hits.object[i];
     }
@@ -173,7 +158,7 @@ void fl_trace_stream_nearest(const fl_compiled *scene, const fl_rays *rays, fl_h
                              fl_isect_counts *counts)
 {
     fl_isect_context context = {0};
-    fl_trace_kernels(scene)->nearest(&scene->geometry, rays, out_hits, &context);
+    fl_isect_kernels_of(scene->isa)->nearest(&scene->geometry, rays, out_hits, &context);
     add_counts(counts, &context);
 }
 
@@ -181,6 +166,6 @@ void fl_trace_stream_any(const fl_compiled *scene, const fl_rays *rays, uint32_t
                          fl_isect_counts *counts)
 {
     fl_isect_context context = {0};
-    fl_trace_kernels(scene)->any(&scene->geometry, rays, out_blocked, &context);
+    fl_isect_kernels_of(scene->isa)->any(&scene->geometry, rays, out_blocked, &context);
     add_counts(counts, &context);
 }

@@ -85,7 +85,7 @@ static bool step(walk *w, const fl_shader *shader, bool is_refracted, bool may_r
 static bool follow(walk *w, const fl_trace_seen *same, fl_trace_seen *out)
 {
     const fl_compiled *scene = w->frame->scene;
-    const fl_isect_kernels *kernels = fl_trace_kernels(scene);
+    const fl_isect_kernels *kernels = fl_isect_kernels_of(scene->isa);
     fl_isect_context context = {.solver = w->frame->params.solver};
     *out = (fl_trace_seen){.object = FL_NONE};
     fl_piece_set_count(&w->piece.rays, 1);

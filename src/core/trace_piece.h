@@ -23,7 +23,4 @@ void fl_piece_deinit(fl_piece *piece);
 /** Entries up to the next multiple of 8 become rays that hit nothing. */
 void fl_piece_set_count(fl_rays *rays, uint32_t count);
 
-/** The kernels of the scene's instruction set. */
-const fl_isect_kernels *fl_trace_kernels(const fl_compiled *scene);
-
 #endif

@@ -70,6 +70,15 @@ static inline fl_vec3 fl_v3_cross(fl_vec3 a, fl_vec3 b)
     return fl_v3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
 
+/** Orthonormal basis (u, v) of the plane with unit normal n. [Duff and others 2017] */
+static inline void fl_v3_basis(fl_vec3 n, fl_vec3 *out_u, fl_vec3 *out_v)
+{
+    double sign = copysign(1.0, n.z);
+    double a = -1.0 / (sign + n.z), b = n.x * n.y * a;
+    *out_u = fl_v3(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x);
+    *out_v = fl_v3(b, sign + n.y * n.y * a, -n.y);
+}
+
 /** Largest absolute component. */
 static inline double fl_v3_max_abs(fl_vec3 a)
 {

@@ -169,7 +169,7 @@ static void close_bench(bench *b)
 static void first_hits(bench *b)
 {
     fl_isect_context context = {0};
-    const fl_isect_kernels *kernels = fl_trace_kernels(b->compiled);
+    const fl_isect_kernels *kernels = fl_isect_kernels_of(b->compiled->isa);
     for (uint32_t i = 0; i < PIECE; i++) {
         double away = i % 8 == 0 ? 100.0 : 3.0;
         fl_vec3 from = fl_v3_mad(b->center, direction(b), away * b->size);
@@ -344,7 +344,7 @@ static bool run_place(const kind *k, double scale, double distance, bool is_besi
     while (ok && t->rays < until) {
         first_hits(&b);
         uint32_t count = leave(&b, all);
-        fl_trace_kernels(b.compiled)
+        fl_isect_kernels_of(b.compiled->isa)
             ->nearest(&b.compiled->geometry, &b.piece.rays, &b.piece.hits, &context);
         for (uint32_t i = 0; i < count; i++)
             judge(&b, k, &all[i], i, t);

@@ -331,21 +331,5 @@ void world_rays_finish(world_rays *r)
 
 const fl_isect_kernels *world_kernels(fl_isa isa)
 {
-    if (!fl_cpu_has(isa))
-        return NULL;
-    switch (isa) {
-    case FL_ISA_SCALAR:
-        return &fl_isect_kernels_scalar;
-#if defined(__x86_64__)
-    case FL_ISA_SSE2:
-        return &fl_isect_kernels_sse2;
-    case FL_ISA_AVX2:
-        return &fl_isect_kernels_avx2;
-#elif defined(__aarch64__)
-    case FL_ISA_NEON:
-        return &fl_isect_kernels_neon;
-#endif
-    default:
-        return NULL;
-    }
+    return fl_cpu_has(isa) ? fl_isect_kernels_of(isa) : NULL;
 }
