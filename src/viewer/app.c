@@ -276,11 +276,11 @@ static void save_if_whole(app *a)
     }
 }
 
-/* Who orders a snapshot and leaves has it still. */
+/* Who orders a snapshot and leaves has it still, also when a signal says so. */
 static bool save_at_the_end(app *a, fl_diags *diags)
 {
     vw_session *session = &a->session;
-    if (!session->exact_samples || !a->has_quit)
+    if (!session->exact_samples)
         return true;
     vw_session_hurry_order(session);
     if (!fl_render_wait(session->render, -1.0))

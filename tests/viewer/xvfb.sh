@@ -5,7 +5,7 @@
 # Nothing waits by guess: each step waits for a line that the viewer prints.
 set -euo pipefail
 
-for tool in xvfb-run xdotool import compare identify; do
+for tool in xvfb-run xdotool import compare convert identify; do
     command -v "$tool" >/dev/null || { echo "skipped: $tool is not installed"; exit 77; }
 done
 if [ -z "${FL_UNDER_XVFB:-}" ]; then
@@ -40,6 +40,11 @@ expect() {
 shoot() { import -window "$window" "$shots/$1.png"; }
 differing() { compare -metric AE "$shots/$1.png" "$shots/$2.png" null: 2>&1 || true; }
 
+# Whether the ball on the left is of the one colour more than of the other.
+ball() { [ "$(convert "$shots/$1.png" -format "%[fx:p{175,145}.$2-p{175,145}.$3>0.3]" info:)" = 1 ]; }
+# Two shots but for noise and a line of text.
+same() { [ "$(compare -metric AE -fuzz 8% "$shots/$1.png" "$shots/$2.png" null: 2>&1 | cut -d. -f1)" -lt 2000 ]; }
+
 # Everything sent before has been handled and drawn when the second of two answers is there.
 settle() {
     for answer in 1 2; do
@@ -72,7 +77,7 @@ xdotool key F1
 settle
 shoot help
 [ "$(differing picture help | cut -d. -f1)" -gt 50000 ] || fail 'the help does not show'
-xdotool key F1 F1 # the second page, and away
+xdotool key F1 F1 F1 # the other pages, and away
 
 xdotool keydown d
 settle
@@ -160,26 +165,20 @@ settle
 
 # A scene that is saved is read again by itself; a broken one leaves the picture and says where.
 xdotool key R
-while read -r -t 2 line <&3; do :; done # What is still to come of all that.
-shoot before
+until settle; shoot before; ball before r b; do :; done
 sed -i 's/diffuseColor 0.8 0.12 0.08/diffuseColor 0.1 0.2 0.9/' live.txt
-expect 'done 16 samples'
-settle
-shoot reloaded
-[ "$(differing before reloaded | cut -d. -f1)" -gt 5000 ] || fail 'the changed scene does not show'
+until settle; shoot reloaded; settle; shoot again; ball reloaded b r && same reloaded again; do :; done
 cp live.txt good.txt
 sed -i 's/radius 0.7/radios 0.7/' live.txt
 until settle; shoot broken; [ "$(differing reloaded broken | cut -d. -f1)" -gt 20000 ]; do :; done
 cp good.txt live.txt
-expect 'done 16 samples'
-settle
+until settle; shoot mended; same reloaded mended; do :; done
 
 # A scene that names a mesh which is not there yet is read again when the mesh comes.
-shoot before
 sed 's/^\( *\)Sphere.*radius 0.7.*/\1TriangleMesh { obj_file late.obj }/' good.txt >late.txt
 grep -q late.obj late.txt || fail 'the scene was not changed'
 mv late.txt live.txt
-until settle; shoot missing; [ "$(differing before missing | cut -d. -f1)" -gt 20000 ]; do :; done
+until settle; shoot missing; [ "$(differing mended missing | cut -d. -f1)" -gt 20000 ]; do :; done
 printf 'v -1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >late.obj
 expect 'done 16 samples'
 
@@ -205,6 +204,22 @@ done
 # The snapshot opens where it was taken.
 "$program" render firstlight-001.png -o again.png --quiet || fail 'the snapshot does not open'
 cmp -s firstlight-001.png again.png || fail 'the snapshot opened gives other bytes'
+
+# Nor is it lost when a signal ends the viewer before the picture is whole.
+rm -f firstlight-00?.png session.log
+"$program" view "$scene" --light-samples 300 --size 640x480 --record session.log --quiet 2>errors &
+viewer=$!
+window=$(xdotool search --sync --onlyvisible --name firstlight | head -1)
+xdotool windowfocus --sync "$window"
+xdotool key F12
+until grep -q snapshot session.log; do kill -0 "$viewer" || fail 'the viewer ended by itself'; done
+kill -TERM "$viewer"
+code=0
+wait "$viewer" || code=$?
+viewer=
+[ "$code" = 130 ] || fail "exit code after SIGTERM: $code: $(cat errors)"
+"$program" render firstlight-001.png -o again.png --quiet || fail 'the snapshot ordered before SIGTERM does not open'
+cmp -s firstlight-001.png again.png || fail 'the snapshot ordered before SIGTERM is another picture'
 
 code=0
 env -u DISPLAY -u WAYLAND_DISPLAY "$program" view "$scene" 2>errors || code=$?
