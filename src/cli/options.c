@@ -212,7 +212,7 @@ static bool store(const cli_option *row, const char *text, cli_options *out)
     }
     case CLI_KIND_NUMBER_OR_INF: {
         double value;
-        if (!whole_number(text, &value) || !(value >= row->lowest))
+        if (!whole_number(text, &value) || !(value >= row->lowest && (value <= row->highest || isinf(value))))
             return false;
         *(double *)field = value;
         return true;
@@ -259,7 +259,7 @@ static void describe_values(const cli_option *row, char *out, size_t bytes)
         snprintf(out, bytes, "a number from %g to %g", row->lowest, row->highest);
         break;
     case CLI_KIND_NUMBER_OR_INF:
-        snprintf(out, bytes, "a number above 0, or inf");
+        snprintf(out, bytes, "a number from %g to %g, or inf", row->lowest, row->highest);
         break;
     case CLI_KIND_SIZE:
     case CLI_KIND_PIXEL:
