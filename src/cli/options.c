@@ -203,16 +203,13 @@ static bool store(const cli_option *row, const char *text, cli_options *out)
             return list_of_counts(row, text, ' ', 1, field);
         *(uint32_t *)field = CLI_AUTO;
         return true;
-    case CLI_KIND_NUMBER: {
-        double value;
-        if (!whole_number(text, &value) || !(value >= row->lowest && value <= row->highest))
-            return false;
-        *(double *)field = value;
-        return true;
-    }
+    case CLI_KIND_NUMBER:
     case CLI_KIND_NUMBER_OR_INF: {
         double value;
-        if (!whole_number(text, &value) || !(value >= row->lowest && (value <= row->highest || isinf(value))))
+        bool may_be_inf = row->kind == CLI_KIND_NUMBER_OR_INF;
+        if (!whole_number(text, &value) || !(value >= row->lowest))
+            return false;
+        if (value > row->highest && !(may_be_inf && isinf(value)))
             return false;
         *(double *)field = value;
         return true;
@@ -256,10 +253,9 @@ static void describe_values(const cli_option *row, char *out, size_t bytes)
                  row->kind == CLI_KIND_COUNT ? "" : ", or auto");
         break;
     case CLI_KIND_NUMBER:
-        snprintf(out, bytes, "a number from %g to %g", row->lowest, row->highest);
-        break;
     case CLI_KIND_NUMBER_OR_INF:
-        snprintf(out, bytes, "a number from %g to %g, or inf", row->lowest, row->highest);
+        snprintf(out, bytes, "a number from %g to %g%s", row->lowest, row->highest,
+                 row->kind == CLI_KIND_NUMBER ? "" : ", or inf");
         break;
     case CLI_KIND_SIZE:
     case CLI_KIND_PIXEL:
