@@ -11,3 +11,8 @@ check() { # WHAT EXPECTED GOT
         cat stderr
     fi
 }
+
+# The number or hash of that name in a line of JSON.
+field() { # NAME FILE
+    sed -n 's/.*"'"$1"'":"\{0,1\}\([0-9a-f]*\).*/\1/p' "$2"
+}

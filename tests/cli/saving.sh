@@ -14,7 +14,10 @@ strace -qqq -o /dev/null true 2>/dev/null || exit 77
 # A program that is traced cannot look for its own leaks.
 export ASAN_OPTIONS="${ASAN_OPTIONS:-}:detect_leaks=0"
 
-film() { "$program" render picture.png --quiet --json 2>stderr | sed -n 's/.*"film_sha256":"\([0-9a-f]*\).*/\1/p'; }
+film() {
+    "$program" render picture.png --quiet --json 2>stderr >json
+    field film_sha256 json
+}
 save() { "$@" "$program" render "$scene" -n 1 --size 64x48 -o picture.png --quiet >/dev/null 2>stderr; }
 beside() { find . -name '.*.tmp'; }
 

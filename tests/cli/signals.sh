@@ -27,7 +27,6 @@ awk 'BEGIN {
     for (y = 0; y < n; y++) for (x = 1; x <= n; x++) { a = y * (n + 1) + x; print "f", a, a + 1, a + n + 2, a + n + 1 }
 }' >mesh.obj
 scene 'TriangleMesh { file mesh.obj }' >mesh.txt
-field() { sed -n 's/.*"'"$1"'":"\{0,1\}\([0-9a-f]*\).*/\1/p' "$2"; }
 
 # Begin a render without an end; $child is its process.
 begin() { # SCENE OPTIONS...

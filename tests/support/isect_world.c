@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "isect_world.h"
+#include "support/seed.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,10 +12,7 @@
 
 uint64_t world_bits(world_random *random)
 {
-    uint64_t z = random->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
+    return test_bits(&random->state);
 }
 
 double world_unit(world_random *random)

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "support/property.h"
 
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -23,20 +22,12 @@ typedef struct choices {
 } choices;
 
 struct property {
-    uint64_t state; /* of the generator, splitmix64 [Steele, Lea, Flood 2014] */
+    uint64_t state; /* Of the generator (seed.h). */
     bool is_replay; /* Numbers come from `drawn` while it lasts; then they are 0. */
     uint32_t given; /* How many of `drawn` there were before the replay. */
     choices drawn;
     char message[8192];
 };
-
-static uint64_t next_bits(property *p)
-{
-    uint64_t z = p->state += 0x9e3779b97f4a7c15u;
-    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
-    return z ^ z >> 31;
-}
 
 static uint64_t record(property *p, uint64_t value, uint64_t below)
 {
@@ -52,7 +43,7 @@ static uint64_t record(property *p, uint64_t value, uint64_t below)
 
 uint64_t property_below(property *p, uint64_t below)
 {
-    uint64_t bits = next_bits(p);
+    uint64_t bits = test_bits(&p->state);
     return record(p, below > 0 ? bits % below : bits, below);
 }
 

@@ -10,6 +10,15 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/** 64 random bits, splitmix64 [Steele, Lea, Flood 2014]; any state will do. */
+static inline uint64_t test_bits(uint64_t *state)
+{
+    uint64_t z = *state += 0x9e3779b97f4a7c15u;
+    z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ z >> 27) * 0x94d049bb133111ebu;
+    return z ^ z >> 31;
+}
+
 /** FL_TEST_SEED, or `standard`; printed, for whoever has to repeat it. */
 static inline uint32_t test_seed(uint32_t standard)
 {

@@ -12,15 +12,13 @@
 #include <string.h>
 
 #include "core/mesh.h"
+#include "support/seed.h"
 
 static uint64_t random_state;
 
-static uint32_t draw(void) /* the high half of splitmix64 */
+static uint32_t draw(void)
 {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return (uint32_t)((z ^ (z >> 31)) >> 32);
+    return (uint32_t)(test_bits(&random_state) >> 32);
 }
 
 static double draw_unit(void)

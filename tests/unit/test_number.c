@@ -13,15 +13,13 @@
 #include <string.h>
 
 #include "core/number.h"
+#include "support/seed.h"
 
 static uint64_t random_state;
 
-static uint64_t draw(void) /* splitmix64 */
+static uint64_t draw(void)
 {
-    uint64_t z = random_state += 0x9e3779b97f4a7c15u;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
+    return test_bits(&random_state);
 }
 
 static uint64_t bits_of(double value)

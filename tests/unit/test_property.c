@@ -9,8 +9,6 @@
 #include <cmocka.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 #include "support/property.h"
 
