@@ -280,17 +280,9 @@ static void check_samples(fl_pipe *pipe)
 
 static const fl_shade_kernels *shade_kernels(fl_isa isa)
 {
-#if defined(__x86_64__)
-    if (isa == FL_ISA_AVX2)
-        return &fl_shade_kernels_avx2;
-    if (isa == FL_ISA_SSE2)
-        return &fl_shade_kernels_sse2;
-#elif defined(__aarch64__)
-    if (isa == FL_ISA_NEON)
-        return &fl_shade_kernels_neon;
-#endif
-    FL_ASSERT(isa == FL_ISA_SCALAR);
-    return &fl_shade_kernels_scalar;
+    static const fl_shade_kernels *const table[FL_ISA_COUNT] = FL_ISA_TABLE(fl_shade_kernels);
+    FL_ASSERT(table[isa]);
+    return table[isa];
 }
 
 bool fl_pipeline_run(const fl_frame *frame, const fl_unit *unit, fl_workspace *workspace,

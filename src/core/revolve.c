@@ -131,15 +131,7 @@ fl_revolve *fl_revolve_build(fl_arena *arena, const fl_profile *profile, fl_diag
 
 void fl_revolve_set_isa(fl_revolve *revolve, fl_isa isa)
 {
-    static const fl_revolve_ops *const ops[FL_ISA_COUNT] = {
-        [FL_ISA_SCALAR] = &fl_revolve_ops_scalar,
-#if defined(__x86_64__)
-        [FL_ISA_SSE2] = &fl_revolve_ops_sse2,
-        [FL_ISA_AVX2] = &fl_revolve_ops_avx2,
-#elif defined(__aarch64__)
-        [FL_ISA_NEON] = &fl_revolve_ops_neon,
-#endif
-    };
+    static const fl_revolve_ops *const ops[FL_ISA_COUNT] = FL_ISA_TABLE(fl_revolve_ops);
     FL_ASSERT((unsigned)isa < FL_ISA_COUNT && ops[isa]);
     revolve->ops = ops[isa];
 }

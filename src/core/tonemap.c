@@ -9,15 +9,7 @@
 /* 2^+-100 is a finite float, and beyond it no radiance worth showing is left. */
 #define EXPOSURE_MAX_EV 100.0
 
-static fl_tonemap_kernel *const kernels[FL_ISA_COUNT] = {
-    [FL_ISA_SCALAR] = fl_tonemap_kernel_scalar,
-#if defined(__x86_64__)
-    [FL_ISA_SSE2] = fl_tonemap_kernel_sse2,
-    [FL_ISA_AVX2] = fl_tonemap_kernel_avx2,
-#elif defined(__aarch64__)
-    [FL_ISA_NEON] = fl_tonemap_kernel_neon,
-#endif
-};
+static fl_tonemap_kernel *const kernels[FL_ISA_COUNT] = FL_ISA_TABLE(fl_tonemap_kernel);
 
 static float float_of(uint32_t bits)
 {
